@@ -1,0 +1,49 @@
+/* The raster pass: a simulated head into an offscreen image, or into a window's swapchain. */
+#pragma once
+
+#include "risorius/device.h"
+#include "risorius/sim.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct ris_draw ris_draw;
+
+typedef struct ris_camera {
+    ris_vec3 eye, target, up; /* mm */
+    float fov_y_deg;
+} ris_camera;
+
+/* "front", "34" (three-quarter from the subject's left), "profile"; false if unknown. Frames the face of the model. */
+bool ris_camera_named(const ris_model *model, const char *name, ris_camera *out);
+
+typedef struct ris_draw_def {
+    uint32_t width, height; /* pixels */
+    bool wireframe;
+} ris_draw_def;
+
+/* Loads textures and parts of the model's head to the device. Errors: RIS_ERROR_DEVICE, RIS_ERROR_DATA (textures). */
+ris_result ris_draw_create(ris_device *device, const ris_model *model, const ris_draw_def *def, ris_draw **out, ris_error *err);
+void ris_draw_destroy(ris_draw *draw);
+ris_result ris_draw_resize(ris_draw *draw, uint32_t width, uint32_t height, ris_error *err);
+void ris_draw_set_wireframe(ris_draw *draw, bool wireframe);
+/* Draws the present state of sim. A Vulkan sim on the same device is read in place; any other is uploaded. */
+ris_result ris_draw_frame(ris_draw *draw, ris_sim *sim, const ris_camera *camera, ris_error *err);
+/* The same with positions and normals given (interpolated output frames); (node_count) each, transforms from sim. */
+ris_result ris_draw_frame_at(ris_draw *draw, ris_sim *sim, const ris_vec4 *position, const ris_vec4 *normal,
+                             const ris_camera *camera, ris_error *err);
+/* Copies the last frame, sRGB RGBA8, top row first (width x height x 4). */
+ris_result ris_draw_read(ris_draw *draw, uint8_t *out, ris_error *err);
+
+/* A window's swapchain: surface is a VkSurfaceKHR as a 64-bit handle made with ris_device_instance(). */
+void *ris_device_instance(ris_device *device);
+typedef struct ris_window ris_window;
+ris_result ris_window_create(ris_device *device, uint64_t surface, uint32_t width, uint32_t height, ris_window **out, ris_error *err);
+/* Shows the last drawn frame; rebuilds the swapchain by itself; a zero-sized (minimised) window is skipped. */
+ris_result ris_window_present(ris_window *window, ris_draw *draw, uint32_t width, uint32_t height, ris_error *err);
+void ris_window_destroy(ris_window *window);
+
+#ifdef __cplusplus
+}
+#endif

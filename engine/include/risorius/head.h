@@ -1,0 +1,161 @@
+/* A head as its files say it: plain structs, parsed and range-checked, nothing baked.
+ * File formats: docs/file-formats.md. All indices 0-based; all pointers owned by the ris_head. */
+#pragma once
+
+#include "risorius/base.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define RIS_NAME_SIZE 64 /* bytes of a name with its terminator */
+
+/* A polygon mesh (OBJ): vertex order and quads are kept as in the file. */
+typedef struct ris_mesh {
+    uint32_t vertex_count, uv_count, face_count;
+    ris_vec3 *position;    /* mm (vertex_count) */
+    float *uv;             /* u, v with v up (uv_count x 2) */
+    uint32_t *face_start;  /* first corner of each face, and the corner count at the end (face_count + 1) */
+    uint32_t *face_vertex; /* vertex of each corner, counter-clockwise outward (face_start[face_count]) */
+    uint32_t *face_uv;     /* uv of each corner, UINT32_MAX = none (face_start[face_count]) */
+} ris_mesh;
+
+/* A named set of skin vertices (regions.json). */
+typedef struct ris_region {
+    char name[RIS_NAME_SIZE];
+    uint32_t count;
+    uint32_t *vertex; /* ascending, unique (count) */
+} ris_region;
+
+typedef enum ris_muscle_kind { RIS_MUSCLE_LINEAR, RIS_MUSCLE_SPHINCTER } ris_muscle_kind;
+typedef enum ris_bone { RIS_BONE_AUTO, RIS_BONE_SKULL, RIS_BONE_JAW, RIS_BONE_EYE_L, RIS_BONE_EYE_R, RIS_BONE_SKIN } ris_bone;
+
+/* One muscle of muscles.json, mirrored records already expanded (KA-38, KA-44). */
+typedef struct ris_muscle_def {
+    char name[RIS_NAME_SIZE]; /* snake-case Latin with .L/.R */
+    ris_muscle_kind kind;
+    ris_bone bone; /* AUTO, SKULL or JAW */
+    uint32_t rows, columns;
+    ris_vec3 *grid;          /* row 0 = fixed end, mm (rows x columns) */
+    ris_vec3 axis[2];        /* sphincter axis a0, a1, mm */
+    bool has_axis;
+    float thickness_mm[2];   /* min, max */
+    float max_shortening;    /* contraction at activation 1, 0..0.30; may be 0 for a passive carrier */
+    float radius_mm;         /* influence beyond the muscle depth (R of spec/prototype.md 5) */
+    float insertion_start;   /* t0 of the insertion profile along the fibre, 0..1 */
+    float lip_drag_power;    /* > 0: the end pulls the lip corner, drag along the oris is t^power; 0 = no pull */
+    float gain;              /* factor on the weight, 1.2 in spec/prototype.md 5 */
+    bool attach_auto;
+    uint32_t attach_count;
+    uint32_t *attach; /* skin vertices when attach_auto is false (attach_count) */
+    uint32_t au_count;
+    char (*au)[16];               /* "AU12" (au_count) */
+    char *origin, *insertion, *source; /* anatomical text, may be empty, never NULL */
+} ris_muscle_def;
+
+typedef enum ris_material {
+    RIS_MATERIAL_SKIN, RIS_MATERIAL_EYE, RIS_MATERIAL_CORNEA, RIS_MATERIAL_TEETH, RIS_MATERIAL_GUM,
+    RIS_MATERIAL_TONGUE, RIS_MATERIAL_HAIR
+} ris_material;
+
+/* A rigid or skin-bound component: eyes, teeth, tongue, lashes, brows (KA-06). */
+typedef struct ris_part_def {
+    char name[RIS_NAME_SIZE];
+    ris_mesh mesh;
+    ris_bone bone;      /* SKULL, JAW, EYE_L, EYE_R, or SKIN = rides on the nearest skin triangle */
+    ris_vec3 pivot;     /* mm, centre of rotation of an eye */
+    ris_material material;
+    char *color;        /* path of its texture, or NULL */
+    ris_vec3 tint;      /* linear RGB when there is no texture */
+} ris_part_def;
+
+typedef struct ris_jaw_def {
+    ris_vec3 point, axis; /* mm, unit; positive turn opens */
+    float open_deg, forward_mm, back_mm, side_mm;
+} ris_jaw_def;
+
+typedef enum ris_tissue_model { RIS_TISSUE_RISORIUS, RIS_TISSUE_KAEHLER } ris_tissue_model;
+
+/* Anchor stiffness of one region; later records override earlier ones. Before stiffness_scale. */
+typedef struct ris_anchor_region {
+    char region[RIS_NAME_SIZE]; /* "bone" = every node, "muscle" = where a muscle acts, else a region name */
+    float normal, tangential;   /* g/s^2 per 25 mm^2 of node area */
+} ris_anchor_region;
+
+/* Numbers of the skin model (KA-10..18; spec/prototype.md 5). ris_default_tissue() fills all. */
+typedef struct ris_tissue_def {
+    ris_tissue_model model;
+    float density_kg_m3, skin_mm; /* KA-13, kaehler mass */
+    float modulus[2];             /* g/s^2: low, high (KA-12) */
+    float switch_stretch;         /* 1.5 */
+    bool continuous;              /* continuous biphasic law; false = the thesis's jump */
+    float compression;            /* factor on the modulus when shorter than rest */
+    float bending;                /* g/s^2 */
+    float stiffness_scale;        /* factor on all stiffness */
+    float damping_per_s;          /* gamma / m of the risorius tissue */
+    float damping_g_s;            /* gamma of the kaehler tissue */
+    float mass_g;                 /* uniform node mass of the risorius tissue */
+    float bone_anchor, muscle_anchor; /* kaehler: 30, 10 g/s^2 */
+    float muscle_radius_mm;           /* kaehler: 10 mm */
+    float constraint_lambda;          /* 30 (KA-33) */
+    uint32_t substeps;                /* per 1/60 s */
+    uint32_t anchor_region_count;
+    ris_anchor_region anchor_region[32];
+} ris_tissue_def;
+
+/* One term of an expression: a channel name (sided or not) and its value. */
+typedef struct ris_term {
+    char channel[RIS_NAME_SIZE];
+    float value;
+} ris_term;
+
+typedef struct ris_expression {
+    char name[RIS_NAME_SIZE];
+    uint32_t term_count;
+    ris_term *term;
+} ris_expression;
+
+typedef struct ris_head {
+    char *directory; /* as given */
+    ris_mesh skin;
+    int32_t *base_vertex; /* skin.map: base mesh vertex or -1 (skin.vertex_count), NULL if no map */
+    char *color;          /* path of the skin texture, or NULL */
+    uint32_t region_count;
+    ris_region *region;
+    char simulated[RIS_NAME_SIZE]; /* region that is simulated (KA-09) */
+    float *depth_mm;               /* skin to bone (skin.vertex_count) */
+    float *jaw_weight;             /* 0 skull .. 1 mandible (skin.vertex_count) */
+    uint32_t muscle_count;
+    ris_muscle_def *muscle;
+    uint32_t part_count;
+    ris_part_def *part;
+    ris_jaw_def jaw;
+    ris_tissue_def tissue;
+    uint32_t expression_count;
+    ris_expression *expression;
+} ris_head;
+
+/* Default tissue: spec/prototype.md section 5, with thesis numbers for the kaehler fields. */
+ris_tissue_def ris_default_tissue(void);
+
+/* Reads directory/head.json and all it names. On failure *out is zeroed and err says file:line:col where it can. */
+ris_result ris_head_load(const char *directory, ris_head *out, ris_error *err);
+
+/* Frees everything inside; safe on a zeroed head. */
+void ris_head_finish(ris_head *head);
+
+/* Region by name, or NULL. */
+const ris_region *ris_head_region(const ris_head *head, const char *name);
+
+/* Strict OBJ reader (v, vt, f, quads kept). On failure *out is zeroed. */
+ris_result ris_mesh_load_obj(const char *path, ris_mesh *out, ris_error *err);
+/* Same from memory; name stands for the file in errors. */
+ris_result ris_mesh_parse_obj(const char *name, const char *text, size_t size, ris_mesh *out, ris_error *err);
+void ris_mesh_finish(ris_mesh *mesh);
+
+/* Refuses NaN, zero-area triangles, isolated vertices, non-manifold or inconsistently oriented edges. name is for the message. */
+ris_result ris_mesh_check(const ris_mesh *mesh, const char *name, ris_error *err);
+
+#ifdef __cplusplus
+}
+#endif

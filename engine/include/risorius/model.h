@@ -1,0 +1,116 @@
+/* A head baked for simulation: const, flat, shared by every simulation and drawing of it.
+ * Node i is skin vertex i, so that caches and targets keep the order of skin.obj. */
+#pragma once
+
+#include "risorius/head.h"
+#include "sim_shared.h" /* GPU-side structs: ris_half_spring, ris_ring, ris_anchor_param */
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* One animation channel: a muscle, or a channel beside muscles (jaw.open, eye.yaw.L, head.x ...). KA-48 */
+typedef struct ris_channel {
+    char name[RIS_NAME_SIZE];
+    float minimum, maximum; /* in file units: 0..1, degrees or mm; rest is 0 */
+} ris_channel;
+
+/* A fibre control polygon of a muscle and its segment frames at rest (KA-23, KA-24). */
+typedef struct ris_fiber {
+    uint32_t first_point;   /* into ris_model.fiber_point; point_count of the muscle follow */
+    uint32_t first_segment; /* into ris_model.segment; point_count - 1 follow */
+} ris_fiber;
+
+/* Segment at rest: origin = centre, axes unit, size full extents in mm (length, height, width). */
+typedef struct ris_segment {
+    ris_vec3 origin, along, up, wide; /* along the fibre, towards the skin, across */
+    ris_vec3 size;                    /* x length, y height, z width, mm */
+} ris_segment;
+
+typedef struct ris_muscle {
+    char name[RIS_NAME_SIZE];
+    ris_muscle_kind kind;
+    bool on_jaw;            /* KA-41 */
+    uint32_t fiber_count, point_count; /* points per fibre */
+    uint32_t first_fiber;
+    float max_shortening, insertion_start, lip_drag_power, radius_mm, gain;
+    ris_vec3 axis[2];
+    const ris_muscle_def *def;
+} ris_muscle;
+
+/* One segment share of a node's attachment to a muscle (KA-42): the point `local` of the segment's frame. */
+typedef struct ris_attach {
+    uint32_t fiber, segment; /* fibre index within the model, segment index within the model */
+    ris_vec3 local;          /* unscaled affine coordinates: divided by the rest size per axis */
+    ris_vec3 rest;           /* the same point in space at rest, mm */
+    float share;             /* blend weights of one binding sum to 1 */
+} ris_attach;
+
+/* A node bound to one muscle with a weight; its attaches are blended. */
+typedef struct ris_binding {
+    uint32_t muscle, first_attach, attach_count;
+    float weight; /* 0..gain */
+} ris_binding;
+
+/* A point of a muscle in a constraint group (KA-28). */
+typedef struct ris_group_point {
+    uint32_t muscle, point;
+    float rest_distance_mm; /* from the group's centroid at rest */
+} ris_group_point;
+
+typedef struct ris_group {
+    uint32_t first_point, point_count;
+} ris_group;
+
+typedef struct ris_model {
+    const ris_head *head; /* not owned when built by ris_model_create */
+    uint32_t node_count, moving_count;
+    uint32_t spring_count;      /* each once */
+    uint32_t half_spring_count; /* 2 x spring_count */
+    uint32_t triangle_count;
+
+    /* baked for the stages (layout of sim_shared.h) */
+    ris_vec4 *rest_position;        /* mm, w inverse mass (node_count) */
+    uint32_t *spring_start;         /* (node_count + 1) */
+    ris_half_spring *half_spring;   /* (half_spring_count) */
+    uint32_t *ring_start;           /* (node_count + 1) */
+    ris_ring *ring;                 /* (3 x triangle_count) */
+    ris_anchor_param *anchor_param; /* (node_count) */
+    ris_vec4 *rest_normal;          /* unit (node_count) */
+    uint32_t *triangle;             /* mirror-symmetric triangulation of the skin (triangle_count x 3) */
+    uint32_t *triangle_corner;      /* corner of head->skin each triangle vertex came from (triangle_count x 3) */
+    float *node_area_mm2;           /* third of the incident triangles (node_count) */
+    float mass_g;
+    ris_sim_push push;              /* constants of the stages with dt_s = 1/60/substeps */
+    float stable_dt_s;              /* bound of spec/kaehler.md 2.9 */
+
+    /* rig */
+    uint32_t channel_count, muscle_count, fiber_count, fiber_point_count, segment_count;
+    ris_channel *channel; /* channel m of the first muscle_count is muscle m */
+    ris_muscle *muscle;
+    ris_fiber *fiber;
+    ris_vec3 *fiber_point; /* rest control points p, mm (fiber_point_count) */
+    ris_segment *segment;
+    uint32_t *binding_start; /* (node_count + 1) */
+    ris_binding *binding;    /* sorted by node */
+    uint32_t attach_count;
+    ris_attach *attach;
+    uint32_t group_count, group_point_count;
+    ris_group *group;
+    ris_group_point *group_point;
+    ris_vec3 *bone_anchor; /* point on the bone below the node at rest, mm (node_count) */
+    const float *jaw_weight; /* (node_count) */
+} ris_model;
+
+/* Bakes a head; head must outlive the model. Errors: RIS_ERROR_DATA with what is wrong (unstable dt, node without anchor ...). */
+ris_result ris_model_create(const ris_head *head, ris_model **out, ris_error *err);
+/* Loads directory and bakes it; the model owns the head. */
+ris_result ris_model_load(const char *directory, ris_model **out, ris_error *err);
+void ris_model_destroy(ris_model *model);
+
+/* Channel index by exact name, or UINT32_MAX. */
+uint32_t ris_model_channel(const ris_model *model, const char *name);
+
+#ifdef __cplusplus
+}
+#endif

@@ -1,0 +1,91 @@
+/* Structs, bindings and group sizes of the simulation, read by C and GLSL (design: written once).
+ * Blocks use layout(scalar); tests/layout checks offsets, strides, bindings and group sizes against the SPIR-V. */
+#ifndef RIS_SIM_SHARED_H
+#define RIS_SIM_SHARED_H
+
+#ifdef RIS_GLSL
+#define ris_float float
+#define ris_uint uint
+#define RIS_STRUCT(name) struct name
+#define RIS_STRUCT_END(name)
+#define ris_v4 vec4
+#else
+#include <stdint.h>
+#include "risorius/base.h"
+#define ris_float float
+#define ris_uint uint32_t
+#define RIS_STRUCT(name) typedef struct name
+#define RIS_STRUCT_END(name) name
+#define ris_v4 ris_vec4
+#endif
+
+#define RIS_GROUP_NODE 64
+
+/* Binding numbers in set 0 of every simulation stage; all are storage buffers. */
+#define RIS_BIND_POSITION 0      /* ris_v4 (node_count): xyz mm, w inverse mass 1/g, 0 = static */
+#define RIS_BIND_REST 1          /* ris_v4 (node_count): xyz mm at rest, w as position */
+#define RIS_BIND_VELOCITY_HALF 2 /* ris_v4: v at t - dt/2, mm/s, w 0 */
+#define RIS_BIND_VELOCITY_PREV 3 /* ris_v4: v at t - 3dt/2, mm/s, w 0 */
+#define RIS_BIND_FORCE 4         /* ris_v4: g mm/s^2, w 0 */
+#define RIS_BIND_BEND 5          /* ris_v4: umbrella vector of the displacement, mm, w 0 */
+#define RIS_BIND_NORMAL 6        /* ris_v4: unit normal, w 0 */
+#define RIS_BIND_SPRING_START 7  /* ris_uint (node_count + 1) */
+#define RIS_BIND_HALF_SPRING 8   /* ris_half_spring (half_spring_count), sorted by node */
+#define RIS_BIND_RING_START 9    /* ris_uint (node_count + 1) */
+#define RIS_BIND_RING 10         /* ris_ring (ring_count), sorted by node */
+#define RIS_BIND_ANCHOR_PARAM 11 /* ris_anchor_param (node_count) */
+#define RIS_BIND_ANCHOR_POINT 12 /* ris_anchor_point (node_count), written once a frame */
+#define RIS_BIND_ANCHOR_DELTA 13 /* ris_v4 (node_count): change of the anchor since last frame, mm, w 0 */
+#define RIS_BIND_COUNT 14
+
+/* One spring seen from one of its nodes. Each spring appears twice. */
+RIS_STRUCT(ris_half_spring) {
+    ris_uint other;      /* node at the far end */
+    ris_float rest_mm;   /* rest length r */
+    ris_float area_ratio;/* g = sum of incident triangle areas / r^2 (KA-11), no unit */
+    ris_float bend_out;  /* weight of `other` in this node's umbrella, sums to 1 over the node */
+    ris_float bend_in;   /* weight of this node in the umbrella of `other`; 0 if that umbrella is not simulated */
+} RIS_STRUCT_END(ris_half_spring);
+
+/* One triangle around a node: node, b, c counter-clockwise. */
+RIS_STRUCT(ris_ring) {
+    ris_uint b;
+    ris_uint c;
+} RIS_STRUCT_END(ris_ring);
+
+/* Anchor stiffness of a node, g/s^2, already scaled. Zero for static nodes.
+ * risorius: normal and tangential; kaehler: normal = k of each of the pair's springs, rest_mm their length. */
+RIS_STRUCT(ris_anchor_param) {
+    ris_float normal;
+    ris_float tangential;
+    ris_float rest_mm;
+    ris_float bend; /* bending stiffness of this node's umbrella, g/s^2, 0 if not simulated */
+} RIS_STRUCT_END(ris_anchor_param);
+
+/* Anchor of a node this frame. risorius: a = target position mm, b = unit normal of the anchor.
+ * kaehler: a = anchor A mm, b = mirror M mm (KA-15). */
+RIS_STRUCT(ris_anchor_point) {
+    ris_v4 a;
+    ris_v4 b;
+} RIS_STRUCT_END(ris_anchor_point);
+
+#define RIS_TISSUE_FLAG_KAEHLER 1u    /* anchor pair instead of normal + tangential anchor */
+#define RIS_TISSUE_FLAG_CONTINUOUS 2u /* continuous biphasic law */
+
+/* Push constants of every stage (<= 128 bytes). */
+RIS_STRUCT(ris_sim_push) {
+    ris_uint node_count;
+    ris_uint flags;
+    ris_float dt_s;
+    ris_float modulus_low;   /* g/s^2 */
+    ris_float modulus_high;  /* g/s^2 */
+    ris_float switch_stretch;
+    ris_float compression;   /* factor on modulus_low when l < r */
+    ris_float damping_per_s; /* gamma / m, 1/s */
+} RIS_STRUCT_END(ris_sim_push);
+
+#ifdef RIS_GLSL
+#undef RIS_STRUCT
+#undef RIS_STRUCT_END
+#endif
+#endif
