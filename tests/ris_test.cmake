@@ -1,0 +1,11 @@
+# ris_add_test(<label> <name> <library>...): builds <name>.c of the current folder against cmocka and runs it under ctest.
+pkg_check_modules(CMOCKA REQUIRED IMPORTED_TARGET cmocka)
+function(ris_add_test label name)
+  add_executable(${name} ${name}.c)
+  target_link_libraries(${name} PRIVATE ${ARGN} ris_flags PkgConfig::CMOCKA m)
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/engine ${PROJECT_SOURCE_DIR}/tests ${CMAKE_BINARY_DIR}/shaders)
+  target_compile_definitions(${name} PRIVATE RIS_SOURCE_DIR="${PROJECT_SOURCE_DIR}" RIS_BUILD_DIR="${CMAKE_BINARY_DIR}")
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
+  add_test(NAME ${label}/${name} COMMAND ${name})
+  set_tests_properties(${label}/${name} PROPERTIES LABELS ${label} TIMEOUT 300)
+endfunction()
