@@ -44,7 +44,7 @@ RIS_STRUCT(ris_half_spring) {
     ris_float rest_mm;   /* rest length r */
     ris_float area_ratio;/* g = sum of incident triangle areas / r^2 (KA-11), no unit */
     ris_float bend_out;  /* weight of `other` in this node's umbrella, sums to 1 over the node */
-    ris_float bend_in;   /* weight of this node in the umbrella of `other`; 0 if that umbrella is not simulated */
+    ris_float bend_in;   /* bending stiffness of `other` x weight of this node in its umbrella, g/s^2; 0 if not simulated */
 } RIS_STRUCT_END(ris_half_spring);
 
 /* One triangle around a node: node, b, c counter-clockwise. */
