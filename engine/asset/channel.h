@@ -1,0 +1,13 @@
+/* Channels beside the muscles (KA-48, design: "Channels beside muscles"). The model's channel table is the muscles
+ * followed by these in this order; the head loader checks expression terms against the same names. */
+#pragma once
+
+#include "risorius/head.h"
+
+typedef struct ris_beside_channel {
+    const char *name;
+    float minimum, maximum; /* file units: 0..1 or -1..1, degrees, mm; rest is 0 */
+} ris_beside_channel;
+
+extern const ris_beside_channel ris__beside_channel[];
+extern const uint32_t ris__beside_channel_count;
