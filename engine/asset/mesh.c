@@ -4,6 +4,7 @@
 #include "risorius/head.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -31,24 +32,24 @@ static ris_result fail_at(const reader *r, const char *at, const char *expected)
     }
     found[length] = 0;
     return ris_fail(r->err, RIS_ERROR_DATA, "%s:%u:%d: expected %s, found %s%s%s", r->name, r->line,
-                    (int)(at - r->line_start) + 1, expected, length ? "\"" : "", length ? found : "the end of the line",
-                    length ? "\"" : "");
+                    (int)(at - r->line_start) + 1, expected, length ? "\"" : "",
+                    length ? found : "the end of the line", length ? "\"" : "");
 }
 
-/* Doubles *capacity of *array until it holds count elements. */
-static ris_result reserve(reader *r, void *array, uint32_t *capacity, uint32_t count, size_t element)
+/* array with room for count elements, doubling *capacity; NULL with err set when memory is out (array stays valid). */
+static void *grown(reader *r, void *array, uint32_t *capacity, uint32_t count, size_t element)
 {
     if (count <= *capacity) {
-        return RIS_OK;
+        return array;
     }
     uint32_t wanted = *capacity ? *capacity * 2 : 256;
-    void *grown = realloc(*(void **)array, wanted * element);
-    if (!grown) {
-        return ris_fail(r->err, RIS_ERROR_MEMORY, "%s: no memory for %u elements", r->name, wanted);
+    void *larger = realloc(array, wanted * element);
+    if (!larger) {
+        ris_fail(r->err, RIS_ERROR_MEMORY, "%s: no memory for %u elements", r->name, wanted);
+        return NULL;
     }
-    *(void **)array = grown;
     *capacity = wanted;
-    return RIS_OK;
+    return larger;
 }
 
 static void skip_blanks(reader *r)
@@ -86,14 +87,20 @@ static ris_result read_vertex(reader *r)
     ris_vec3 p;
     ris_result result;
     if (r->mesh.vertex_count == MAX_VERTICES) {
-        return ris_fail(r->err, RIS_ERROR_DATA, "%s:%u:1: more than %u vertices", r->name, r->line, MAX_VERTICES);
+        return ris_fail(r->err, RIS_ERROR_DATA, "%s:%u:1: more than %u vertices", r->name, r->line,
+                        MAX_VERTICES);
     }
     if ((result = read_number(r, "a finite x", &p.x)) || (result = read_number(r, "a finite y", &p.y)) ||
-        (result = read_number(r, "a finite z", &p.z)) || (result = expect_line_end(r, "three coordinates only")) ||
-        (result = reserve(r, &r->mesh.position, &r->vertex_capacity, r->mesh.vertex_count + 1, sizeof p))) {
+        (result = read_number(r, "a finite z", &p.z)) ||
+        (result = expect_line_end(r, "three coordinates only"))) {
         return result;
     }
-    r->mesh.position[r->mesh.vertex_count++] = p;
+    ris_vec3 *position = grown(r, r->mesh.position, &r->vertex_capacity, r->mesh.vertex_count + 1, sizeof p);
+    if (!position) {
+        return RIS_ERROR_MEMORY;
+    }
+    r->mesh.position = position;
+    position[r->mesh.vertex_count++] = p;
     return RIS_OK;
 }
 
@@ -112,12 +119,16 @@ static ris_result read_uv(reader *r)
     if (r->at < r->line_end && (result = read_number(r, "a finite w", &ignored))) {
         return result;
     }
-    if ((result = expect_line_end(r, "at most three numbers")) ||
-        (result = reserve(r, &r->mesh.uv, &r->uv_capacity, r->mesh.uv_count + 1, 2 * sizeof(float)))) {
+    if ((result = expect_line_end(r, "at most three numbers"))) {
         return result;
     }
-    r->mesh.uv[2 * r->mesh.uv_count] = u;
-    r->mesh.uv[2 * r->mesh.uv_count + 1] = v;
+    float *uv = grown(r, r->mesh.uv, &r->uv_capacity, r->mesh.uv_count + 1, 2 * sizeof *uv);
+    if (!uv) {
+        return RIS_ERROR_MEMORY;
+    }
+    r->mesh.uv = uv;
+    uv[2 * r->mesh.uv_count] = u;
+    uv[2 * r->mesh.uv_count + 1] = v;
     r->mesh.uv_count++;
     return RIS_OK;
 }
@@ -170,43 +181,64 @@ static ris_result read_corner(reader *r, uint32_t *out_vertex, uint32_t *out_uv)
     return RIS_OK;
 }
 
+/* Appends a corner at index; refuses a vertex that the face has already. */
+static ris_result add_corner(reader *r, uint32_t first, uint32_t index)
+{
+    ris_mesh *m = &r->mesh;
+    const char *start = r->at;
+    uint32_t vertex, uv;
+    ris_result result = read_corner(r, &vertex, &uv);
+    if (result) {
+        return result;
+    }
+    for (uint32_t i = first; i < index; i++) {
+        if (m->face_vertex[i] == vertex) {
+            return fail_at(r, start, "a vertex that the face has not named yet");
+        }
+    }
+    uint32_t *face_vertex = grown(r, m->face_vertex, &r->corner_capacity, index + 1, sizeof vertex);
+    if (!face_vertex) {
+        return RIS_ERROR_MEMORY;
+    }
+    m->face_vertex = face_vertex;
+    uint32_t *face_uv = grown(r, m->face_uv, &r->uv_index_capacity, index + 1, sizeof uv);
+    if (!face_uv) {
+        return RIS_ERROR_MEMORY;
+    }
+    m->face_uv = face_uv;
+    face_vertex[index] = vertex;
+    face_uv[index] = uv;
+    return RIS_OK;
+}
+
 static ris_result read_face(reader *r)
 {
     ris_mesh *m = &r->mesh;
     uint32_t first = m->face_count ? m->face_start[m->face_count] : 0, count = 0;
     ris_result result;
     if (m->face_count == MAX_FACES || first > MAX_CORNERS - MAX_FACE_CORNERS) {
-        return ris_fail(r->err, RIS_ERROR_DATA, "%s:%u:1: more than %u faces or %u corners", r->name, r->line, MAX_FACES,
-                        MAX_CORNERS);
+        return ris_fail(r->err, RIS_ERROR_DATA, "%s:%u:1: more than %u faces or %u corners", r->name, r->line,
+                        MAX_FACES, MAX_CORNERS);
     }
     for (skip_blanks(r); r->at < r->line_end; skip_blanks(r)) {
-        const char *start = r->at;
-        uint32_t vertex, uv;
         if (count == MAX_FACE_CORNERS) {
-            return fail_at(r, start, "at most 64 corners");
+            return fail_at(r, r->at, "at most 64 corners");
         }
-        if ((result = read_corner(r, &vertex, &uv)) ||
-            (result = reserve(r, &m->face_vertex, &r->corner_capacity, first + count + 1, sizeof vertex)) ||
-            (result = reserve(r, &m->face_uv, &r->uv_index_capacity, first + count + 1, sizeof uv))) {
+        if ((result = add_corner(r, first, first + count))) {
             return result;
         }
-        for (uint32_t i = first; i < first + count; i++) {
-            if (m->face_vertex[i] == vertex) {
-                return fail_at(r, start, "a vertex that the face has not named yet");
-            }
-        }
-        m->face_vertex[first + count] = vertex;
-        m->face_uv[first + count] = uv;
         count++;
     }
     if (count < 3) {
         return fail_at(r, r->at, "at least three corners");
     }
-    if ((result = reserve(r, &m->face_start, &r->face_capacity, m->face_count + 2, sizeof first))) {
-        return result;
+    uint32_t *face_start = grown(r, m->face_start, &r->face_capacity, m->face_count + 2, sizeof first);
+    if (!face_start) {
+        return RIS_ERROR_MEMORY;
     }
-    m->face_start[m->face_count++] = first;
-    m->face_start[m->face_count] = first + count;
+    m->face_start = face_start;
+    face_start[m->face_count++] = first;
+    face_start[m->face_count] = first + count;
     return RIS_OK;
 }
 
@@ -257,8 +289,9 @@ ris_result ris_mesh_parse_obj(const char *name, const char *text, size_t size, r
         r.line_start = newline ? newline + 1 : end;
     }
     if (result == RIS_OK && (r.mesh.vertex_count == 0 || r.mesh.face_count == 0)) {
-        result = ris_fail(err, RIS_ERROR_DATA, "%s: expected vertices and faces, found %u vertices and %u faces", name,
-                          r.mesh.vertex_count, r.mesh.face_count);
+        result =
+            ris_fail(err, RIS_ERROR_DATA, "%s: expected vertices and faces, found %u vertices and %u faces",
+                     name, r.mesh.vertex_count, r.mesh.face_count);
     }
     if (result != RIS_OK) {
         ris_mesh_finish(&r.mesh);

@@ -17,7 +17,8 @@ static ris_result check_numbers(const ris_mesh *mesh, const char *name, ris_erro
     for (uint32_t i = 0; i < mesh->vertex_count; i++) {
         const ris_vec3 *p = &mesh->position[i];
         if (!isfinite(p->x) || !isfinite(p->y) || !isfinite(p->z)) {
-            return ris_fail(err, RIS_ERROR_DATA, "%s: vertex %u has a coordinate that is not a finite number", name, i);
+            return ris_fail(err, RIS_ERROR_DATA, "%s: vertex %u has a coordinate that is not a finite number",
+                            name, i);
         }
     }
     for (uint32_t i = 0; i < 2 * mesh->uv_count; i++) {
@@ -65,8 +66,9 @@ static ris_result check_areas(const ris_mesh *mesh, const char *name, ris_error 
             uint32_t b = count == 4 ? v[(i + 1) % 4] : v[i + 1];
             uint32_t c = count == 4 ? v[(i + 2) % 4] : v[i + 2];
             if (zero_area(&mesh->position[a], &mesh->position[b], &mesh->position[c])) {
-                return ris_fail(err, RIS_ERROR_DATA, "%s: face %u has a triangle of zero area (vertices %u, %u, %u)",
-                                name, face, a, b, c);
+                return ris_fail(err, RIS_ERROR_DATA,
+                                "%s: face %u has a triangle of zero area (vertices %u, %u, %u)", name, face,
+                                a, b, c);
             }
         }
     }
@@ -102,11 +104,13 @@ static ris_result check_edges(const ris_mesh *mesh, const char *name, half_edge 
             continue;
         }
         if (i >= 2 && edge[i - 2].low == e->low && edge[i - 2].high == e->high) {
-            return ris_fail(err, RIS_ERROR_DATA, "%s: the edge of vertices %u and %u is in more than two faces (%u, %u, %u)",
-                            name, e->low, e->high, edge[i - 2].face, before->face, e->face);
+            return ris_fail(err, RIS_ERROR_DATA,
+                            "%s: the edge of vertices %u and %u is in more than two faces (%u, %u, %u)", name,
+                            e->low, e->high, edge[i - 2].face, before->face, e->face);
         }
         if (e->forward == before->forward) {
-            return ris_fail(err, RIS_ERROR_DATA, "%s: faces %u and %u run the same way along vertices %u and %u", name,
+            return ris_fail(err, RIS_ERROR_DATA,
+                            "%s: faces %u and %u run the same way along vertices %u and %u", name,
                             before->face, e->face, e->low, e->high);
         }
     }
@@ -118,7 +122,8 @@ static ris_result check_isolated(const ris_mesh *mesh, const char *name, ris_err
     ris_result result = RIS_OK;
     uint8_t *used = calloc(mesh->vertex_count ? mesh->vertex_count : 1, 1);
     if (!used) {
-        return ris_fail(err, RIS_ERROR_MEMORY, "%s: no memory to check %u vertices", name, mesh->vertex_count);
+        return ris_fail(err, RIS_ERROR_MEMORY, "%s: no memory to check %u vertices", name,
+                        mesh->vertex_count);
     }
     for (uint32_t c = 0; c < mesh->face_start[mesh->face_count]; c++) {
         used[mesh->face_vertex[c]] = 1;
@@ -136,8 +141,8 @@ ris_result ris_mesh_check(const ris_mesh *mesh, const char *name, ris_error *err
 {
     ris_result result;
     if (mesh->vertex_count == 0 || mesh->face_count == 0) {
-        return ris_fail(err, RIS_ERROR_DATA, "%s: the mesh has %u vertices and %u faces", name, mesh->vertex_count,
-                        mesh->face_count);
+        return ris_fail(err, RIS_ERROR_DATA, "%s: the mesh has %u vertices and %u faces", name,
+                        mesh->vertex_count, mesh->face_count);
     }
     if ((result = check_numbers(mesh, name, err)) || (result = check_areas(mesh, name, err)) ||
         (result = check_isolated(mesh, name, err))) {

@@ -78,7 +78,8 @@ const char *ris__parse_number(const char *text, const char *end, double *out)
     }
     /* both factors are exact doubles, so one rounding: the same result as strtod */
     if (exact && exponent >= -22 && exponent <= 22) {
-        double value = exponent < 0 ? (double)mantissa / power[-exponent] : (double)mantissa * power[exponent];
+        double value =
+            exponent < 0 ? (double)mantissa / power[-exponent] : (double)mantissa * power[exponent];
         *out = negative ? -value : value;
         return p;
     }
