@@ -62,11 +62,12 @@ ris_result ris_vk_buffer_create(ris_device *vk, ris_vk_use use, VkDeviceSize siz
     }
     flags = vk->memory.memoryTypes[allocate.memoryTypeIndex].propertyFlags;
     out->coherent = (flags & VK_MEMORY_PROPERTY_HOST_COHERENT_BIT) != 0;
-    out->device_local = (flags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT) != 0;
+    out->cached = (flags & VK_MEMORY_PROPERTY_HOST_CACHED_BIT) != 0;
+    out->device_local = (flags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT) != 0 && !(vk->staging && use != RIS_VK_DEVICE);
     out->size = size;
     RIS_VK(vkAllocateMemory(vk->handle, &allocate, NULL, &out->memory));
     RIS_VK(vkBindBufferMemory(vk->handle, out->handle, out->memory, 0));
-    if (flags & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) {
+    if ((flags & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) && !(vk->staging && use == RIS_VK_DEVICE)) {
         RIS_VK(vkMapMemory(vk->handle, out->memory, 0, VK_WHOLE_SIZE, 0, &out->data));
     }
     return RIS_OK;

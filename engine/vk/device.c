@@ -272,6 +272,7 @@ ris_result ris_device_create(const ris_device_def *def, ris_device **out, ris_er
 {
     static const ris_device_def plain = { 0 };
     ris_result result;
+    const char *staging;
     ris_device *vk = calloc(1, sizeof *vk);
     *out = NULL;
     if (!vk) {
@@ -280,6 +281,8 @@ ris_result ris_device_create(const ris_device_def *def, ris_device **out, ris_er
     if (!def) {
         def = &plain;
     }
+    staging = getenv("RIS_STAGING");
+    vk->staging = staging && strcmp(staging, "1") == 0;
     vk->present = def->present;
     result = ris__vk_instance_create(vk, def->instance_extensions, def->instance_extension_count, err);
     if (result != RIS_OK) {
@@ -311,6 +314,19 @@ void ris_device_destroy(ris_device *vk)
 const ris_device_info *ris_device_get_info(const ris_device *vk)
 {
     return &vk->info;
+}
+
+bool ris_device_validates(const ris_device *vk)
+{
+    return vk->validation;
+}
+
+uint32_t ris_device_message_count(const ris_device *vk, const char **out_first)
+{
+    if (out_first) {
+        *out_first = vk->message;
+    }
+    return vk->message_count;
 }
 
 void ris_vk_name(ris_device *vk, VkObjectType type, uint64_t handle, const char *name)

@@ -27,6 +27,7 @@ struct ris_device {
     bool present;          /* VK_KHR_swapchain enabled */
     bool debug_utils;      /* object names go to the driver */
     bool validation;       /* RIS_VALIDATION=1: validation and synchronization validation are on */
+    bool staging;          /* RIS_STAGING=1: treat device memory as out of the host's reach, as on a discrete device (tests) */
     bool lost;             /* sticky: every later call fails at once */
     uint32_t timestamp_bits;
     uint32_t message_count;  /* validation warnings and errors so far */
@@ -83,6 +84,7 @@ typedef struct ris_vk_buffer {
     VkDeviceSize size;
     void *data;        /* mapped for UPLOAD and READBACK, and for DEVICE where its memory is host visible; else NULL */
     bool coherent;     /* no flush or invalidate needed */
+    bool cached;       /* host reads are fast */
     bool device_local; /* memory is on the device */
 } ris_vk_buffer;
 

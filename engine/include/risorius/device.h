@@ -29,6 +29,10 @@ ris_result ris_device_list(ris_device_info *out, uint32_t capacity, uint32_t *ou
 ris_result ris_device_create(const ris_device_def *def, ris_device **out, ris_error *err);
 void ris_device_destroy(ris_device *device);
 const ris_device_info *ris_device_get_info(const ris_device *device);
+/* True when the device was created with RIS_VALIDATION=1 in the environment (validation and synchronization validation). */
+bool ris_device_validates(const ris_device *device);
+/* Validation warnings and errors so far; *out_first (may be NULL) is the text of the first, owned by the device. */
+uint32_t ris_device_message_count(const ris_device *device, const char **out_first);
 
 #ifdef __cplusplus
 }

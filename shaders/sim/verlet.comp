@@ -1,0 +1,28 @@
+// verlet (KA-17, KA-18): leapfrog with the damping speed extrapolated from the last two half steps.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "stage.glsl"
+
+layout(set = 0, binding = RIS_BIND_POSITION, scalar) buffer position_block { vec4 position[]; };
+layout(set = 0, binding = RIS_BIND_VELOCITY_HALF, scalar) buffer velocity_half_block { vec4 velocity_half[]; };
+layout(set = 0, binding = RIS_BIND_VELOCITY_PREV, scalar) buffer velocity_prev_block { vec4 velocity_prev[]; };
+layout(set = 0, binding = RIS_BIND_FORCE, scalar) readonly buffer force_block { vec4 force[]; };
+
+void main()
+{
+    const uint i = gl_GlobalInvocationID.x;
+    if (i >= push.node_count) {
+        return;
+    }
+    const vec4 p = position[i];
+    if (p.w > 0.0) {
+        const vec3 h = velocity_half[i].xyz;
+        precise vec3 v = 1.5 * h - 0.5 * velocity_prev[i].xyz;
+        precise vec3 a = p.w * force[i].xyz - push.damping_per_s * v;
+        precise vec3 u = h + push.dt_s * a;
+        precise vec3 x = p.xyz + push.dt_s * u;
+        velocity_prev[i] = vec4(h, 0.0);
+        velocity_half[i] = vec4(u, 0.0);
+        position[i] = vec4(x, p.w);
+    }
+}
