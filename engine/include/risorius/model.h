@@ -49,7 +49,8 @@ typedef struct ris_attach {
 /* A node bound to one muscle with a weight; its attaches are blended. */
 typedef struct ris_binding {
     uint32_t muscle, first_attach, attach_count;
-    float weight; /* 0..gain */
+    float weight; /* 0..1; times the activity of the muscle */
+    float along;  /* arc-length parameter of the nearest fibre point, 0 = row 0 .. 1 = last row */
 } ris_binding;
 
 /* A point of a muscle in a constraint group (KA-28). */
@@ -64,6 +65,7 @@ typedef struct ris_group {
 
 typedef struct ris_model {
     const ris_head *head; /* not owned when built by ris_model_create */
+    ris_head *owned_head; /* the same head when built by ris_model_load, else NULL */
     uint32_t node_count, moving_count;
     uint32_t spring_count;      /* each once */
     uint32_t half_spring_count; /* 2 x spring_count */

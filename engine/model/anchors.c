@@ -1,0 +1,132 @@
+/* KA-14, KA-15 and the anchors of the default tissue (spec/prototype.md 5): one anchor on every moving node, its stiffness by
+ * region, smoothed over region borders and in proportion to the node's area. */
+#include "model_impl.h"
+#include "vec3.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define AREA_UNIT_MM2 25.0f
+#define SMOOTHING_PASSES 2
+
+/* Sets (or, for "muscle", blends in) the stiffness of one record. */
+static ris_result apply_region(const ris_bake *bake, const ris_anchor_region *record, float *normal, float *tangential, ris_error *err)
+{
+    const uint32_t n = bake->model->node_count;
+    if (strcmp(record->region, "bone") == 0) {
+        for (uint32_t i = 0; i < n; ++i) {
+            normal[i] = record->normal;
+            tangential[i] = record->tangential;
+        }
+        return RIS_OK;
+    }
+    if (strcmp(record->region, "muscle") == 0) {
+        for (uint32_t i = 0; i < n; ++i) {
+            normal[i] += bake->muscle_weight[i] * (record->normal - normal[i]);
+            tangential[i] += bake->muscle_weight[i] * (record->tangential - tangential[i]);
+        }
+        return RIS_OK;
+    }
+    bool *flags = NULL;
+    ris_result result = ris__model_alloc(&flags, n, sizeof *flags, "anchors", err);
+    if (result == RIS_OK) { /* a head need not have every region of the default tissue */
+        ris__region_flags(bake->head, record->region, flags);
+    }
+    for (uint32_t i = 0; result == RIS_OK && i < n; ++i) {
+        normal[i] = flags[i] ? record->normal : normal[i];
+        tangential[i] = flags[i] ? record->tangential : tangential[i];
+    }
+    free(flags);
+    return result;
+}
+
+static void smooth(const ris_model *model, float *value, float *scratch)
+{
+    for (uint32_t pass = 0; pass < SMOOTHING_PASSES; ++pass) {
+        memcpy(scratch, value, model->node_count * sizeof *value);
+        for (uint32_t i = 0; i < model->node_count; ++i) {
+            uint32_t first = model->spring_start[i], end = model->spring_start[i + 1];
+            float sum = 0.0f;
+            for (uint32_t h = first; h < end; ++h) {
+                sum += scratch[model->half_spring[h].other];
+            }
+            if (end > first) {
+                value[i] = 0.5f * scratch[i] + 0.5f * sum / (float)(end - first);
+            }
+        }
+    }
+}
+
+static ris_result fill_default(ris_bake *bake, float *normal, float *tangential, float *scratch, ris_error *err)
+{
+    ris_model *model = bake->model;
+    const ris_tissue_def *tissue = &bake->head->tissue;
+    for (uint32_t k = 0; k < tissue->anchor_region_count; ++k) {
+        ris_result result = apply_region(bake, &tissue->anchor_region[k], normal, tangential, err);
+        if (result != RIS_OK) {
+            return result;
+        }
+    }
+    smooth(model, normal, scratch);
+    smooth(model, tangential, scratch);
+    for (uint32_t i = 0; i < model->node_count; ++i) {
+        if (!bake->moving[i]) {
+            continue;
+        }
+        const float scale = f_clamp(model->node_area_mm2[i] / AREA_UNIT_MM2, 0.05f, 4.0f) * tissue->stiffness_scale;
+        ris_anchor_param *param = &model->anchor_param[i];
+        param->normal = normal[i] * scale;
+        param->tangential = tangential[i] * scale;
+        param->bend = tissue->bending * tissue->stiffness_scale;
+        if (!(param->normal >= 0.0f) || !(param->tangential >= 0.0f)) {
+            return ris_fail(err, RIS_ERROR_DATA, "anchor stiffness of vertex %u is %g, %g, expected 0 or more", i,
+                            (double)param->normal, (double)param->tangential);
+        }
+    }
+    return RIS_OK;
+}
+
+/* The thesis: a spring pair of one stiffness, on the muscle if one is near, else on the bone. */
+static ris_result fill_kaehler(ris_bake *bake, ris_error *err)
+{
+    ris_model *model = bake->model;
+    const ris_tissue_def *tissue = &bake->head->tissue;
+    for (uint32_t i = 0; i < model->node_count; ++i) {
+        if (!bake->moving[i]) {
+            continue;
+        }
+        const bool on_muscle = model->binding_start[i + 1] > model->binding_start[i];
+        const ris_vec3 a = on_muscle ? model->attach[model->binding[model->binding_start[i]].first_attach].rest : model->bone_anchor[i];
+        ris_anchor_param *param = &model->anchor_param[i];
+        param->normal = on_muscle ? tissue->muscle_anchor : tissue->bone_anchor;
+        param->rest_mm = v3_length(v3_sub(a, v4_xyz(model->rest_position[i])));
+        if (!(param->rest_mm > 0.0f)) {
+            return ris_fail(err, RIS_ERROR_DATA, "vertex %u has neither a muscle nor a depth to the bone: nothing holds it", i);
+        }
+    }
+    return RIS_OK;
+}
+
+ris_result ris__bake_anchors(ris_bake *bake, ris_error *err)
+{
+    ris_model *model = bake->model;
+    const uint32_t n = model->node_count;
+    float *values = NULL;
+    ris_result result = ris__model_alloc(&model->bone_anchor, n, sizeof *model->bone_anchor, "anchors", err);
+    if (result == RIS_OK) {
+        result = ris__model_alloc(&model->anchor_param, n, sizeof *model->anchor_param, "anchors", err);
+    }
+    if (result == RIS_OK) {
+        result = ris__model_alloc(&values, 3 * (size_t)n, sizeof *values, "anchors", err);
+    }
+    if (result != RIS_OK) {
+        return result;
+    }
+    for (uint32_t i = 0; i < n; ++i) {
+        model->bone_anchor[i] = v3_mad(v4_xyz(model->rest_position[i]), -bake->head->depth_mm[i], v4_xyz(model->rest_normal[i]));
+    }
+    result = bake->head->tissue.model == RIS_TISSUE_KAEHLER ? fill_kaehler(bake, err)
+                                                           : fill_default(bake, values, values + n, values + 2 * (size_t)n, err);
+    free(values);
+    return result;
+}

@@ -1,0 +1,334 @@
+/* KA-42 muscle to skin. Default tissue (spec/prototype.md 5): every moving node within radius_mm of the muscle, blended over the
+ * near segments, with an insertion profile along the fibre. kaehler tissue: the one nearest attachment, distances divided by
+ * n_s . n_d. A node is never bound through the skin (n_s . n_d <= 0), nor to a muscle of the other lip. */
+#include "model_impl.h"
+#include "vec3.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define MAX_BLEND 8       /* segments blended into one binding */
+#define BLEND_RATIO 1.6f  /* segments up to BLEND_RATIO x nearest + BLEND_MM take part */
+#define BLEND_MM 2.0f
+#define FACING_FULL 0.2f  /* n_s . n_d from which on the facing rule does not weaken a binding */
+
+enum { LIP_UPPER = 1, LIP_LOWER = 2 };
+
+/* Where a node meets a segment's flat sheet. */
+typedef struct touch {
+    uint32_t fiber, segment;
+    ris_vec3 local; /* y = +-0.5: the muscle surface on the node's side */
+    float distance; /* to the sheet, mm */
+    float facing;   /* n_s . n_d */
+    float along;    /* arc-length parameter along the fibre */
+    float share;
+} touch;
+
+typedef struct binder {
+    ris_bake *bake;
+    const float *arc; /* arc-length parameter of each fibre point */
+    uint8_t *lip;     /* per node: LIP_UPPER, LIP_LOWER bits */
+    uint8_t *muscle_lip;
+    uint8_t *muscle_node; /* explicit attach lists, (muscle_count x node_count) bits as bytes, NULL if there are none */
+    size_t binding_room, attach_room;
+} binder;
+
+static touch meet_segment(const binder *b, uint32_t fiber, uint32_t row, uint32_t node)
+{
+    const ris_model *model = b->bake->model;
+    const uint32_t point = model->fiber[fiber].first_point + row;
+    touch t = {.fiber = fiber, .segment = model->fiber[fiber].first_segment + row};
+    const ris_segment *segment = &model->segment[t.segment];
+    const ris_vec3 x = v4_xyz(model->rest_position[node]), rel = v3_sub(x, segment->origin);
+    t.local.x = f_clamp(v3_dot(rel, segment->along) / segment->size.x, -0.5f, 0.5f);
+    t.local.z = f_clamp(v3_dot(rel, segment->wide) / segment->size.z, -0.5f, 0.5f);
+    t.local.y = v3_dot(rel, segment->up) < 0.0f ? -0.5f : 0.5f;
+    ris_vec3 on_sheet = v3_mad(segment->origin, t.local.x * segment->size.x, segment->along);
+    on_sheet = v3_mad(on_sheet, t.local.z * segment->size.z, segment->wide);
+    const ris_vec3 d = v3_sub(x, on_sheet);
+    t.distance = v3_length(d);
+    t.facing = v3_dot(v3_unit_or(d, segment->up), v4_xyz(model->rest_normal[node]));
+    t.along = b->arc[point] + (t.local.x + 0.5f) * (b->arc[point + 1] - b->arc[point]);
+    return t;
+}
+
+static bool may_bind(const binder *b, uint32_t m, uint32_t node)
+{
+    const uint8_t lip = b->muscle_lip[m];
+    if ((lip == LIP_UPPER && b->lip[node] == LIP_LOWER) || (lip == LIP_LOWER && b->lip[node] == LIP_UPPER)) {
+        return false;
+    }
+    const ris_muscle_def *def = b->bake->model->muscle[m].def;
+    return def->attach_auto || b->muscle_node[(size_t)m * b->bake->model->node_count + node];
+}
+
+static ris_result grow(void *array, size_t *room, size_t count, size_t size, ris_error *err)
+{
+    if (count <= *room) {
+        return RIS_OK;
+    }
+    size_t wanted = *room ? *room * 2 : 1024;
+    wanted = wanted < count ? count : wanted;
+    void *old;
+    memcpy(&old, array, sizeof old);
+    void *memory = realloc(old, wanted * size);
+    if (!memory) {
+        return ris_fail(err, RIS_ERROR_MEMORY, "not enough memory for muscle attachments (%zu x %zu bytes)", wanted, size);
+    }
+    memcpy(array, &memory, sizeof memory);
+    *room = wanted;
+    return RIS_OK;
+}
+
+static ris_result add_binding(binder *b, uint32_t m, uint32_t node, const touch *touches, uint32_t count, float weight, float along,
+                              ris_error *err)
+{
+    ris_model *model = b->bake->model;
+    const uint32_t binding_count = model->binding_start[node + 1];
+    ris_result result = grow(&model->binding, &b->binding_room, (size_t)binding_count + 1, sizeof *model->binding, err);
+    if (result == RIS_OK) {
+        result = grow(&model->attach, &b->attach_room, (size_t)model->attach_count + count, sizeof *model->attach, err);
+    }
+    if (result != RIS_OK) {
+        return result;
+    }
+    ris_binding *binding = &model->binding[binding_count];
+    *binding = (ris_binding){.muscle = m, .first_attach = model->attach_count, .attach_count = count, .weight = weight, .along = along};
+    for (uint32_t k = 0; k < count; ++k) {
+        const ris_segment *segment = &model->segment[touches[k].segment];
+        const ris_vec3 *p = model->fiber_point + model->fiber[touches[k].fiber].first_point +
+                            (touches[k].segment - model->fiber[touches[k].fiber].first_segment);
+        ris_attach *attach = &model->attach[model->attach_count++];
+        attach->fiber = touches[k].fiber;
+        attach->segment = touches[k].segment;
+        attach->local = touches[k].local;
+        attach->rest = ris__segment_point(segment, p[0], p[1], p[0], p[1], 1.0f, touches[k].local);
+        attach->share = touches[k].share;
+    }
+    ++model->binding_start[node + 1];
+    b->bake->muscle_weight[node] = f_max(b->bake->muscle_weight[node], weight);
+    return RIS_OK;
+}
+
+/* Nearest segments first, at most MAX_BLEND. */
+static void keep_nearest(touch *list, uint32_t *count, touch t)
+{
+    uint32_t slot = *count;
+    while (slot > 0 && list[slot - 1].distance > t.distance) {
+        --slot;
+    }
+    if (slot == MAX_BLEND) {
+        return;
+    }
+    uint32_t last = *count < MAX_BLEND ? (*count)++ : MAX_BLEND - 1;
+    memmove(list + slot + 1, list + slot, (last - slot) * sizeof *list);
+    list[slot] = t;
+}
+
+/* Default tissue: weight of node on muscle, blended over the near segments. */
+static ris_result bind_blended(binder *b, uint32_t m, uint32_t node, ris_error *err)
+{
+    const ris_model *model = b->bake->model;
+    const ris_muscle *muscle = &model->muscle[m];
+    const float depth = b->bake->head->tissue.skin_mm + (muscle->def->thickness_mm[0] + muscle->def->thickness_mm[1]) / 4.0f;
+    touch list[MAX_BLEND] = {0};
+    uint32_t count = 0;
+    for (uint32_t f = 0; f < muscle->fiber_count; ++f) {
+        for (uint32_t r = 0; r + 1 < muscle->point_count; ++r) {
+            keep_nearest(list, &count, meet_segment(b, muscle->first_fiber + f, r, node));
+        }
+    }
+    const float beyond = f_max(list[0].distance - depth, 0.0f);
+    if (!(beyond < muscle->radius_mm)) {
+        return RIS_OK;
+    }
+    const float limit = BLEND_RATIO * list[0].distance + BLEND_MM;
+    float sum = 0.0f, along = 0.0f, facing = 0.0f;
+    uint32_t kept = 0;
+    for (uint32_t k = 0; k < count; ++k) {
+        float s = f_max(1.0f - list[k].distance / limit, 0.0f) / f_max(list[k].distance, 0.01f);
+        list[k].share = s * s;
+        sum += list[k].share;
+        kept += list[k].share > 0.0f; /* nearest first: those kept are the first */
+    }
+    for (uint32_t k = 0; k < kept; ++k) {
+        list[k].share /= sum;
+        along += list[k].share * list[k].along;
+        facing += list[k].share * list[k].facing;
+    }
+    const float ratio = beyond / muscle->radius_mm, bell = 1.0f - ratio * ratio;
+    float weight = bell * bell * f_clamp(facing / FACING_FULL, 0.0f, 1.0f);
+    if (muscle->kind == RIS_MUSCLE_LINEAR) {
+        float start = muscle->insertion_start;
+        weight *= f_smoothstep(muscle->gain * (along - start) / f_max(1.0f - start, 1e-3f));
+    }
+    if (!(weight > 1e-4f)) {
+        return RIS_OK;
+    }
+    return add_binding(b, m, node, list, kept, weight, along, err);
+}
+
+/* kaehler tissue: the attachment of smallest distance / (n_s . n_d) over all muscles. */
+static ris_result bind_nearest(binder *b, uint32_t node, ris_error *err)
+{
+    const ris_model *model = b->bake->model;
+    const float radius = b->bake->head->tissue.muscle_radius_mm;
+    float best = INFINITY;
+    uint32_t best_muscle = 0;
+    touch nearest = {0};
+    for (uint32_t m = 0; m < model->muscle_count; ++m) {
+        const ris_muscle *muscle = &model->muscle[m];
+        if (!may_bind(b, m, node)) {
+            continue;
+        }
+        for (uint32_t f = 0; f < muscle->fiber_count; ++f) {
+            for (uint32_t r = 0; r + 1 < muscle->point_count; ++r) {
+                touch t = meet_segment(b, muscle->first_fiber + f, r, node);
+                if (t.facing > 0.0f && t.distance <= radius && t.distance / t.facing < best) {
+                    best = t.distance / t.facing;
+                    best_muscle = m;
+                    nearest = t;
+                }
+            }
+        }
+    }
+    nearest.share = 1.0f;
+    return best < INFINITY ? add_binding(b, best_muscle, node, &nearest, 1, 1.0f, nearest.along, err) : RIS_OK;
+}
+
+static uint32_t nearest_node(const ris_model *model, ris_vec3 p)
+{
+    float best = INFINITY;
+    uint32_t nearest = 0;
+    for (uint32_t i = 0; i < model->node_count; ++i) {
+        ris_vec3 d = v3_sub(v4_xyz(model->rest_position[i]), p);
+        if (v3_dot(d, d) < best) {
+            best = v3_dot(d, d);
+            nearest = i;
+        }
+    }
+    return nearest;
+}
+
+/* Lips of the nodes by region; lips of a muscle by the nodes nearest to its grid. */
+static ris_result sort_lips(binder *b, ris_error *err)
+{
+    const ris_model *model = b->bake->model;
+    const ris_head *head = b->bake->head;
+    ris_result result = ris__model_alloc(&b->lip, model->node_count, sizeof *b->lip, "lip flags", err);
+    if (result == RIS_OK) {
+        result = ris__model_alloc(&b->muscle_lip, model->muscle_count, sizeof *b->muscle_lip, "lip flags", err);
+    }
+    if (result != RIS_OK) {
+        return result;
+    }
+    const ris_region *upper = ris_head_region(head, "lip_upper"), *lower = ris_head_region(head, "lip_lower");
+    for (uint32_t k = 0; upper && k < upper->count; ++k) {
+        b->lip[upper->vertex[k]] |= LIP_UPPER;
+    }
+    for (uint32_t k = 0; lower && k < lower->count; ++k) {
+        b->lip[lower->vertex[k]] |= LIP_LOWER;
+    }
+    for (uint32_t m = 0; m < model->muscle_count; ++m) {
+        const ris_muscle_def *def = model->muscle[m].def;
+        uint32_t votes[2] = {0};
+        for (uint32_t k = 0; k < def->rows * def->columns; ++k) {
+            uint8_t lip = b->lip[nearest_node(model, def->grid[k])];
+            votes[0] += lip == LIP_UPPER;
+            votes[1] += lip == LIP_LOWER;
+        }
+        /* a muscle of both corners of the mouth belongs to both lips */
+        b->muscle_lip[m] = votes[0] > 2 * votes[1] ? LIP_UPPER : votes[1] > 2 * votes[0] ? LIP_LOWER : 0;
+        if (def->lip_drag_power > 0.0f) {
+            b->muscle_lip[m] = 0;
+        }
+    }
+    return RIS_OK;
+}
+
+static ris_result mark_lists(binder *b, ris_error *err)
+{
+    const ris_model *model = b->bake->model;
+    bool any = false;
+    for (uint32_t m = 0; m < model->muscle_count; ++m) {
+        any = any || !model->muscle[m].def->attach_auto;
+    }
+    if (!any) {
+        return RIS_OK;
+    }
+    ris_result result = ris__model_alloc(&b->muscle_node, (size_t)model->muscle_count * model->node_count, 1, "attach lists", err);
+    for (uint32_t m = 0; result == RIS_OK && m < model->muscle_count; ++m) {
+        const ris_muscle_def *def = model->muscle[m].def;
+        for (uint32_t k = 0; !def->attach_auto && k < def->attach_count; ++k) {
+            if (def->attach[k] >= model->node_count) {
+                return ris_fail(err, RIS_ERROR_DATA, "muscle %s is attached to vertex %u, but the skin has %u", def->name,
+                                def->attach[k], model->node_count);
+            }
+            b->muscle_node[(size_t)m * model->node_count + def->attach[k]] = 1;
+        }
+    }
+    return result;
+}
+
+static float *measure_arcs(const ris_model *model, ris_error *err)
+{
+    float *arc = NULL;
+    if (ris__model_alloc(&arc, model->fiber_point_count, sizeof *arc, "fibre lengths", err) != RIS_OK) {
+        return NULL;
+    }
+    for (uint32_t m = 0; m < model->muscle_count; ++m) {
+        const ris_muscle *muscle = &model->muscle[m];
+        for (uint32_t f = 0; f < muscle->fiber_count; ++f) {
+            float *t = arc + model->fiber[muscle->first_fiber + f].first_point;
+            const ris_vec3 *p = model->fiber_point + model->fiber[muscle->first_fiber + f].first_point;
+            for (uint32_t i = 1; i < muscle->point_count; ++i) {
+                t[i] = t[i - 1] + v3_distance(p[i], p[i - 1]);
+            }
+            for (uint32_t i = 1; i < muscle->point_count; ++i) {
+                t[i] /= t[muscle->point_count - 1];
+            }
+        }
+    }
+    return arc;
+}
+
+ris_result ris__bake_bindings(ris_bake *bake, ris_error *err)
+{
+    ris_model *model = bake->model;
+    const bool literal = bake->head->tissue.model == RIS_TISSUE_KAEHLER;
+    binder b = {.bake = bake};
+    ris_result result = ris__model_alloc(&model->binding_start, (size_t)model->node_count + 1, sizeof *model->binding_start,
+                                         "bindings", err);
+    if (result == RIS_OK) {
+        result = ris__model_alloc(&bake->muscle_weight, model->node_count, sizeof *bake->muscle_weight, "bindings", err);
+    }
+    float *arc = result == RIS_OK ? measure_arcs(model, err) : NULL;
+    result = result == RIS_OK && !arc ? RIS_ERROR_MEMORY : result;
+    b.arc = arc;
+    if (result == RIS_OK) {
+        result = sort_lips(&b, err);
+    }
+    if (result == RIS_OK) {
+        result = mark_lists(&b, err);
+    }
+    for (uint32_t i = 0; result == RIS_OK && i < model->node_count; ++i) {
+        model->binding_start[i + 1] = model->binding_start[i];
+        if (!bake->moving[i]) {
+            continue;
+        }
+        if (literal) {
+            result = bind_nearest(&b, i, err);
+            continue;
+        }
+        for (uint32_t m = 0; result == RIS_OK && m < model->muscle_count; ++m) {
+            if (may_bind(&b, m, i)) {
+                result = bind_blended(&b, m, i, err);
+            }
+        }
+    }
+    free(arc);
+    free(b.lip);
+    free(b.muscle_lip);
+    free(b.muscle_node);
+    return result;
+}

@@ -1,0 +1,53 @@
+/* Builders of ris_model, in the order ris_model_create calls them. Each fills its fields and says what is wrong with the head. */
+#pragma once
+
+#include "risorius/model.h"
+
+#define RIS_GROUP_MAX 64 /* muscle points in one constraint group */
+
+/* Head as parsed plus what only the bake needs. */
+typedef struct ris_bake {
+    ris_model *model;
+    const ris_head *head;
+    uint32_t *ring_triangle; /* triangle of each ring entry (3 x triangle_count) */
+    float *triangle_area;    /* mm^2 (triangle_count) */
+    bool *moving;         /* in the simulated region (node_count) */
+    float *muscle_weight; /* largest binding weight, 0..1 (node_count) */
+    ris_vec3 *grid_point; /* grids projected and sunk below the skin (sum of rows x columns) */
+    ris_vec3 *grid_normal;
+    uint32_t *grid_first; /* first grid point of each muscle (muscle_count + 1) */
+} ris_bake;
+
+/* calloc of count x size that reports what it was for; count 0 gives a valid pointer. */
+ris_result ris__model_alloc(void *out, size_t count, size_t size, const char *what, ris_error *err);
+
+/* KA-02: triangles, ring, node areas, rest normals; refuses non-manifold or unoriented edges. */
+ris_result ris__bake_triangles(ris_bake *bake, ris_error *err);
+/* Which nodes move (KA-09) and their mass (KA-13); rest_position. */
+ris_result ris__bake_mass(ris_bake *bake, ris_error *err);
+/* KA-10, KA-11 and the bending umbrella: spring_start, half_spring. */
+ris_result ris__bake_springs(ris_bake *bake, ris_error *err);
+/* KA-38, KA-40: grids below the skin; KA-23, 24, 41: fibres and segments. */
+ris_result ris__bake_grids(ris_bake *bake, ris_error *err);
+ris_result ris__bake_muscles(ris_bake *bake, ris_error *err);
+/* KA-28: constraint groups of muscle ends. */
+ris_result ris__bake_groups(ris_bake *bake, ris_error *err);
+/* KA-42: which nodes a muscle moves, and how much. */
+ris_result ris__bake_bindings(ris_bake *bake, ris_error *err);
+/* KA-14, KA-15 and the anchors of the default tissue: bone_anchor, anchor_param. */
+ris_result ris__bake_anchors(ris_bake *bake, ris_error *err);
+/* Constants of the stages and the stable time step (spec 2.9). */
+ris_result ris__bake_push(ris_bake *bake, ris_error *err);
+/* KA-48: the channel table. */
+ris_result ris__bake_channels(ris_bake *bake, ris_error *err);
+
+/* Node -> true for the vertices of a region; flags are added to, (node_count). */
+void ris__region_flags(const ris_head *head, const char *name, bool *flags);
+
+/* Point `local` (unscaled affine coordinates) of a segment whose ends are now a, b and whose height is scaled by bulge (KA-37).
+ * p0, p1 are the ends the segment's frame was built from. */
+ris_vec3 ris__segment_point(const ris_segment *segment, ris_vec3 p0, ris_vec3 p1, ris_vec3 a, ris_vec3 b, float bulge,
+                            ris_vec3 local);
+
+/* Mean over the fibres of control point `point` (KA-27). */
+ris_vec3 ris__muscle_point(const ris_model *model, const ris_muscle *muscle, const ris_vec3 *points, uint32_t point);

@@ -1,0 +1,28 @@
+/* verlet: KA-17 leapfrog with velocity evaluation, KA-16 damping, KA-18 start (v_half = v_prev = v0). Order: docs/physics.md. */
+#include "sim/cpu/cpu_stage.h"
+
+static void integrate(float *x, float *half, float *prev, float force, float inverse_mass, const ris_sim_push *push)
+{
+    const float h = *half;
+    const float v = 1.5f * h - 0.5f * *prev;
+    const float a = inverse_mass * force - push->damping_per_s * v;
+    const float u = h + push->dt_s * a;
+    *prev = h;
+    *half = u;
+    *x = *x + push->dt_s * u;
+}
+
+void ris__cpu_verlet(ris_cpu_state *state)
+{
+    const ris_sim_push push = state->model->push;
+    for (uint32_t i = 0; i < state->model->node_count; ++i) {
+        ris_vec4 *x = &state->position[i], *half = &state->velocity_half[i], *prev = &state->velocity_prev[i];
+        const ris_vec4 *f = &state->force[i];
+        const float w = x->w;
+        if (w > 0.0f) {
+            integrate(&x->x, &half->x, &prev->x, f->x, w, &push);
+            integrate(&x->y, &half->y, &prev->y, f->y, w, &push);
+            integrate(&x->z, &half->z, &prev->z, f->z, w, &push);
+        }
+    }
+}

@@ -1,0 +1,115 @@
+/* muscle_attach, last host stage: KA-37 attached points follow their segments; KA-14, KA-15 anchors of the tick.
+ *
+ * Default tissue (spec/prototype.md 5), node at rest X, bindings (muscle, weight w, activity s in 0..1):
+ *     P      = X + sum w s delta / max(1, sum w s)          delta blended over the segments of the binding
+ *              a pulled corner of the mouth adds delta = its displacement with weight w s t^p, t = 1 at the corner, 0 at midline
+ *     target = P + jaw_weight (J(P) - P),  normal = unit(n + jaw_weight (J n - n))
+ * kaehler tissue: anchor A follows its one segment or its bone, mirror M moves by the same displacement.
+ * The change of the target since the last tick is the over-relaxation of anchor_shift. */
+#include "sim/rig.h"
+
+#include "model/model_impl.h"
+#include "model/vec3.h"
+
+static ris_vec3 attached_point(const ris_rig *rig, const ris_muscle *muscle, const ris_attach *attach)
+{
+    const ris_model *model = rig->model;
+    const ris_fiber *fiber = &model->fiber[attach->fiber];
+    const uint32_t point = fiber->first_point + (attach->segment - fiber->first_segment);
+    ris_segment segment = model->segment[attach->segment];
+    if ((model->push.flags & RIS_TISSUE_FLAG_KAEHLER) && muscle->on_jaw) {
+        segment.along = ris__rigid_rotate(&rig->jaw, segment.along);
+        segment.up = ris__rigid_rotate(&rig->jaw, segment.up);
+        segment.wide = ris__rigid_rotate(&rig->jaw, segment.wide);
+    }
+    return ris__segment_point(&segment, rig->p[point], rig->p[point + 1], rig->q[point], rig->q[point + 1],
+                              rig->bulge[attach->segment], attach->local);
+}
+
+/* Adds what one binding moves its node by, and the weight it does so with. */
+static void add_binding(const ris_rig *rig, const ris_binding *binding, ris_vec3 *sum, float *total)
+{
+    const ris_model *model = rig->model;
+    const ris_muscle *muscle = &model->muscle[binding->muscle];
+    const float activity = rig->activity[binding->muscle];
+    if (activity > 0.0f && muscle->max_shortening > 0.0f) {
+        ris_vec3 delta = {0};
+        for (uint32_t k = 0; k < binding->attach_count; ++k) {
+            const ris_attach *attach = &model->attach[binding->first_attach + k];
+            delta = v3_mad(delta, attach->share, v3_sub(attached_point(rig, muscle, attach), attach->rest));
+        }
+        const float w = binding->weight * activity;
+        *sum = v3_mad(*sum, w, delta);
+        *total += w;
+    }
+    for (uint32_t end = 0; muscle->kind == RIS_MUSCLE_SPHINCTER && end < 2; ++end) {
+        const ris_drag *drag = &rig->drag[2 * (size_t)binding->muscle + end];
+        const float t = end ? 2.0f * binding->along - 1.0f : 1.0f - 2.0f * binding->along;
+        if (drag->strength > 0.0f && t > 0.0f) {
+            const float w = binding->weight * drag->strength * ris__power(t, drag->power);
+            *sum = v3_mad(*sum, w, drag->displacement);
+            *total += w;
+        }
+    }
+}
+
+static void attach_default(ris_rig *rig, uint32_t i)
+{
+    const ris_model *model = rig->model;
+    ris_vec3 sum = {0}, normal = v4_xyz(model->rest_normal[i]), target = v4_xyz(model->rest_position[i]);
+    float total = 0.0f;
+    for (uint32_t b = model->binding_start[i]; b < model->binding_start[i + 1]; ++b) {
+        add_binding(rig, &model->binding[b], &sum, &total);
+    }
+    if (total > 0.0f) {
+        target = v3_mad(target, 1.0f / f_max(total, 1.0f), sum);
+    }
+    const float jaw = model->jaw_weight[i];
+    if (!rig->jaw.identity && jaw > 0.0f) {
+        target = v3_lerp(target, ris__rigid_apply(&rig->jaw, target), jaw);
+        normal = v3_unit_or(v3_lerp(normal, ris__rigid_rotate(&rig->jaw, normal), jaw), normal);
+    }
+    rig->delta[i] = v4_from(v3_sub(target, rig->target[i]), 0.0f);
+    rig->target[i] = target;
+    rig->point[i].a = v4_from(target, 0.0f);
+    rig->point[i].b = v4_from(normal, 0.0f);
+}
+
+static void attach_kaehler(ris_rig *rig, uint32_t i)
+{
+    const ris_model *model = rig->model;
+    const ris_vec3 x = v4_xyz(model->rest_position[i]);
+    ris_vec3 a = model->bone_anchor[i], mirror;
+    if (model->binding_start[i + 1] > model->binding_start[i]) {
+        const ris_binding *binding = &model->binding[model->binding_start[i]];
+        const ris_attach *attach = &model->attach[binding->first_attach];
+        a = attached_point(rig, &model->muscle[binding->muscle], attach);
+        mirror = v3_add(v3_sub(v3_scale(x, 2.0f), attach->rest), v3_sub(a, attach->rest));
+    } else {
+        mirror = v3_sub(v3_scale(x, 2.0f), a);
+        if (model->jaw_weight[i] > 0.5f) {
+            a = ris__rigid_apply(&rig->jaw, a);
+            mirror = ris__rigid_apply(&rig->jaw, mirror);
+        }
+    }
+    rig->delta[i] = v4_from(v3_sub(a, rig->target[i]), 0.0f);
+    rig->target[i] = a;
+    rig->point[i].a = v4_from(a, 0.0f);
+    rig->point[i].b = v4_from(mirror, 0.0f);
+}
+
+void ris__muscle_attach(ris_rig *rig)
+{
+    const ris_model *model = rig->model;
+    const bool kaehler = (model->push.flags & RIS_TISSUE_FLAG_KAEHLER) != 0;
+    for (uint32_t i = 0; i < model->node_count; ++i) {
+        if (!(model->rest_position[i].w > 0.0f)) {
+            continue;
+        }
+        if (kaehler) {
+            attach_kaehler(rig, i);
+        } else {
+            attach_default(rig, i);
+        }
+    }
+}

@@ -1,0 +1,44 @@
+/* muscle_bulge: KA-36, height of the segments from the change of the fibre's length. */
+#include "sim/rig.h"
+
+#include "model/vec3.h"
+
+#define NU_CONTRACT 5.0f
+#define NU_STRETCH 1.0f
+#define SMALLEST 0.1f
+
+float ris__bulge_factor(ris_muscle_kind kind, float rho, uint32_t i, uint32_t count)
+{
+    const float nu = rho > 1.0f ? NU_STRETCH : NU_CONTRACT;
+    float shape = 1.0f;
+    if (kind == RIS_MUSCLE_LINEAR && count >= 3) {
+        const float s = 2.0f * (float)i / (float)(count - 1) - 1.0f;
+        shape = 1.0f - s * s;
+    }
+    return f_max(1.0f + nu * (1.0f - rho) * shape, SMALLEST);
+}
+
+static float length_of(const ris_vec3 *p, uint32_t n)
+{
+    float length = 0.0f;
+    for (uint32_t i = 1; i < n; ++i) {
+        length += v3_distance(p[i], p[i - 1]);
+    }
+    return length;
+}
+
+void ris__muscle_bulge(ris_rig *rig)
+{
+    const ris_model *model = rig->model;
+    for (uint32_t m = 0; m < model->muscle_count; ++m) {
+        const ris_muscle *muscle = &model->muscle[m];
+        for (uint32_t f = 0; f < muscle->fiber_count; ++f) {
+            const ris_fiber *fiber = &model->fiber[muscle->first_fiber + f];
+            const float rho = length_of(rig->q + fiber->first_point, muscle->point_count) /
+                              length_of(rig->p + fiber->first_point, muscle->point_count);
+            for (uint32_t s = 0; s + 1 < muscle->point_count; ++s) {
+                rig->bulge[fiber->first_segment + s] = ris__bulge_factor(muscle->kind, rho, s, muscle->point_count - 1);
+            }
+        }
+    }
+}

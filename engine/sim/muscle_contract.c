@@ -1,0 +1,79 @@
+/* muscle_contract: KA-31 linear and KA-32 sphincter contraction of every fibre. */
+#include "sim/rig.h"
+
+#include "model/vec3.h"
+
+#include <string.h>
+
+#define LARGEST_CONTRACTION 0.95f
+#define SMALLEST_PARAMETER 0.01f
+#define ACTIVITY_FULL 0.1f /* activation from which on a muscle counts fully among those that act */
+
+void ris__contract_linear(const ris_vec3 *p, uint32_t n, float c, ris_vec3 *q)
+{
+    if (!(c > 0.0f)) {
+        memcpy(q, p, n * sizeof *q);
+        return;
+    }
+    float total = 0.0f;
+    for (uint32_t i = 1; i < n; ++i) {
+        total += v3_distance(p[i], p[i - 1]);
+    }
+    q[0] = p[0];
+    float own = 0.0f; /* length up to point i */
+    for (uint32_t i = 1; i < n; ++i) {
+        own += v3_distance(p[i], p[i - 1]);
+        const float wanted = f_max((1.0f - c) * own, SMALLEST_PARAMETER * total);
+        /* the segment k, k + 1 that holds the wanted length: a <= wanted <= b */
+        uint32_t k = 0;
+        float a = 0.0f, b = v3_distance(p[1], p[0]);
+        while (b < wanted && k + 2 < n) {
+            ++k;
+            a = b;
+            b += v3_distance(p[k + 1], p[k]);
+        }
+        q[i] = v3_lerp(p[k], p[k + 1], b > a ? (wanted - a) / (b - a) : 0.0f);
+    }
+}
+
+ris_vec3 ris__contract_sphincter(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, float a, uint32_t j, uint32_t f, float c)
+{
+    const ris_vec3 axis = v3_sub(a1, a0), moving = v3_mad(a0, a, axis);
+    const float length2 = v3_dot(axis, axis);
+    ris_vec3 centre = moving;
+    if (length2 > 0.0f && f > 1) {
+        const ris_vec3 foot = v3_mad(a0, v3_dot(axis, v3_sub(p, a0)) / length2, axis);
+        centre = v3_lerp(foot, moving, (float)j / (float)(f - 1));
+    }
+    return v3_mad(centre, 1.0f - c, v3_sub(p, centre));
+}
+
+void ris__muscle_contract(ris_rig *rig, const float *pose)
+{
+    const ris_model *model = rig->model;
+    const bool kaehler = (model->push.flags & RIS_TISSUE_FLAG_KAEHLER) != 0;
+    for (uint32_t m = 0; m < model->muscle_count; ++m) {
+        const ris_muscle *muscle = &model->muscle[m];
+        const float activation = f_clamp(pose[m], 0.0f, 1.0f);
+        const float c = f_min(activation * muscle->max_shortening, LARGEST_CONTRACTION);
+        rig->activation[m] = activation;
+        rig->activity[m] = f_min(activation / ACTIVITY_FULL, 1.0f);
+        rig->contraction[m] = c;
+        ris_vec3 axis[2] = {muscle->axis[0], muscle->axis[1]};
+        if (kaehler && muscle->on_jaw) {
+            axis[0] = ris__rigid_apply(&rig->jaw, axis[0]);
+            axis[1] = ris__rigid_apply(&rig->jaw, axis[1]);
+        }
+        for (uint32_t f = 0; f < muscle->fiber_count; ++f) {
+            const uint32_t first = model->fiber[muscle->first_fiber + f].first_point;
+            if (muscle->kind == RIS_MUSCLE_LINEAR) {
+                ris__contract_linear(rig->p + first, muscle->point_count, c, rig->q + first);
+                continue;
+            }
+            for (uint32_t i = 0; i < muscle->point_count; ++i) {
+                const ris_vec3 p = rig->p[first + i];
+                rig->q[first + i] = c > 0.0f ? ris__contract_sphincter(p, axis[0], axis[1], 1.0f, f, muscle->fiber_count, c) : p;
+            }
+        }
+    }
+}

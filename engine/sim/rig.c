@@ -1,0 +1,94 @@
+/* Memory of the host half of a tick (KA-30). */
+#include "sim/rig.h"
+
+#include "model/model_impl.h"
+#include "model/vec3.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+ris_result ris__rig_init(ris_rig *rig, const ris_model *model, ris_error *err)
+{
+    memset(rig, 0, sizeof *rig);
+    rig->model = model;
+    rig->first_beside = model->muscle_count;
+    const struct {
+        void *field;
+        size_t count, size;
+    } arrays[] = {
+        {&rig->p, model->fiber_point_count, sizeof *rig->p},
+        {&rig->q, model->fiber_point_count, sizeof *rig->q},
+        {&rig->constrained, model->fiber_point_count, sizeof *rig->constrained},
+        {&rig->contraction, model->muscle_count, sizeof *rig->contraction},
+        {&rig->activation, model->muscle_count, sizeof *rig->activation},
+        {&rig->activity, model->muscle_count, sizeof *rig->activity},
+        {&rig->drag, 2 * (size_t)model->muscle_count, sizeof *rig->drag},
+        {&rig->bulge, model->segment_count, sizeof *rig->bulge},
+        {&rig->target, model->node_count, sizeof *rig->target},
+        {&rig->point, model->node_count, sizeof *rig->point},
+        {&rig->delta, model->node_count, sizeof *rig->delta},
+    };
+    for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; ++k) {
+        ris_result result = ris__model_alloc(arrays[k].field, arrays[k].count, arrays[k].size, "the muscle stages", err);
+        if (result != RIS_OK) {
+            ris__rig_finish(rig);
+            return result;
+        }
+    }
+    for (uint32_t g = 0; g < model->group_point_count; ++g) {
+        const ris_muscle *muscle = &model->muscle[model->group_point[g].muscle];
+        for (uint32_t f = 0; f < muscle->fiber_count; ++f) {
+            rig->constrained[model->fiber[muscle->first_fiber + f].first_point + model->group_point[g].point] = true;
+        }
+    }
+    ris__rig_reset(rig);
+    return RIS_OK;
+}
+
+void ris__rig_finish(ris_rig *rig)
+{
+    free(rig->p);
+    free(rig->q);
+    free(rig->constrained);
+    free(rig->contraction);
+    free(rig->activation);
+    free(rig->activity);
+    free(rig->drag);
+    free(rig->bulge);
+    free(rig->target);
+    free(rig->point);
+    free(rig->delta);
+    memset(rig, 0, sizeof *rig);
+}
+
+void ris__rig_reset(ris_rig *rig)
+{
+    const ris_model *model = rig->model;
+    const bool kaehler = (model->push.flags & RIS_TISSUE_FLAG_KAEHLER) != 0;
+    rig->jaw = ris__rigid_turn(v3(0, 0, 0), v3(1, 0, 0), 0.0);
+    rig->eye[0] = rig->eye[1] = rig->head = rig->jaw;
+    memcpy(rig->p, model->fiber_point, model->fiber_point_count * sizeof *rig->p);
+    memcpy(rig->q, model->fiber_point, model->fiber_point_count * sizeof *rig->q);
+    memset(rig->contraction, 0, model->muscle_count * sizeof *rig->contraction);
+    memset(rig->activation, 0, model->muscle_count * sizeof *rig->activation);
+    memset(rig->activity, 0, model->muscle_count * sizeof *rig->activity);
+    memset(rig->drag, 0, 2 * (size_t)model->muscle_count * sizeof *rig->drag);
+    memset(rig->delta, 0, model->node_count * sizeof *rig->delta);
+    for (uint32_t s = 0; s < model->segment_count; ++s) {
+        rig->bulge[s] = 1.0f;
+    }
+    for (uint32_t i = 0; i < model->node_count; ++i) {
+        ris_vec3 x = v4_xyz(model->rest_position[i]);
+        rig->target[i] = x;
+        rig->point[i].a = v4_from(x, 0.0f);
+        rig->point[i].b = model->rest_normal[i];
+        if (kaehler) {
+            ris_vec3 a = model->binding_start[i + 1] > model->binding_start[i]
+                             ? model->attach[model->binding[model->binding_start[i]].first_attach].rest
+                             : model->bone_anchor[i];
+            rig->target[i] = a;
+            rig->point[i].a = v4_from(a, 0.0f);
+            rig->point[i].b = v4_from(v3_sub(v3_scale(x, 2.0f), a), 0.0f);
+        }
+    }
+}

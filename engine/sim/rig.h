@@ -1,0 +1,75 @@
+/* The host half of a tick (KA-30): pose -> jaw and bones -> muscles -> anchors. One ris_rig per simulation; each stage is a file
+ * with the stage's name. The stages are called in the order of their declarations. */
+#pragma once
+
+#include "sim/sim_impl.h"
+
+/* x -> rotation (x - point) + point + shift; identity leaves bits alone. */
+typedef struct ris_rigid {
+    float rotation[9]; /* row-major */
+    ris_vec3 point, shift;
+    bool identity;
+} ris_rigid;
+
+/* How far a corner of the mouth drags the lips: one for each end of a sphincter. */
+typedef struct ris_drag {
+    ris_vec3 displacement; /* mm */
+    float power;           /* activation-weighted mean of the pulling muscles' lip_drag_power */
+    float strength;        /* 0..1, activity of the pull */
+} ris_drag;
+
+typedef struct ris_rig {
+    const ris_model *model;
+    uint32_t first_beside; /* channel number of jaw.open */
+    /* jaw_pose */
+    ris_rigid jaw, eye[2], head;
+    ris_vec3 *p; /* rest control points, turned with the jaw in the kaehler tissue (fiber_point_count) */
+    /* muscle_contract */
+    float *contraction; /* c per muscle */
+    float *activation;  /* 0..1 per muscle */
+    float *activity;    /* min(1, activation / 0.1) per muscle */
+    ris_vec3 *q;        /* deformed control points (fiber_point_count) */
+    /* muscle_constrain */
+    ris_drag *drag;     /* (2 x muscle_count): first and last end of sphincters */
+    bool *constrained;  /* per fibre point (fiber_point_count) */
+    /* muscle_bulge */
+    float *bulge; /* height scale per segment (segment_count) */
+    /* muscle_attach */
+    ris_vec3 *target;         /* of the previous tick (node_count) */
+    ris_anchor_point *point;  /* (node_count) */
+    ris_vec4 *delta;          /* (node_count) */
+} ris_rig;
+
+ris_result ris__rig_init(ris_rig *rig, const ris_model *model, ris_error *err);
+void ris__rig_finish(ris_rig *rig);
+/* Neutral pose: targets at rest, deltas zero. */
+void ris__rig_reset(ris_rig *rig);
+
+/* The stages; pose has channel_count floats. */
+void ris__jaw_pose(ris_rig *rig, const float *pose);
+void ris__muscle_contract(ris_rig *rig, const float *pose);
+void ris__muscle_constrain(ris_rig *rig);
+void ris__muscle_relax(ris_rig *rig);
+void ris__muscle_bulge(ris_rig *rig);
+void ris__muscle_attach(ris_rig *rig);
+
+/* Formulas of the stages, alone for the hand-computed numbers of spec/kaehler.md 5. */
+
+/* KA-05. Rotation by angle_rad about the unit axis through point. */
+ris_rigid ris__rigid_turn(ris_vec3 point, ris_vec3 axis, double angle_rad);
+ris_vec3 ris__rigid_apply(const ris_rigid *rigid, ris_vec3 x);
+ris_vec3 ris__rigid_rotate(const ris_rigid *rigid, ris_vec3 v);
+/* KA-31. n points of a fibre at rest, contraction c, result q (n). */
+void ris__contract_linear(const ris_vec3 *p, uint32_t n, float c, ris_vec3 *q);
+/* KA-32. Point p of fibre j of f (0 outermost), axis a0-a1, position a on it. */
+ris_vec3 ris__contract_sphincter(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, float a, uint32_t j, uint32_t f, float c);
+/* KA-33. Moves n points to their rest distance from the centroid weighted with 1 + lambda c; rest gives the fallback direction.
+ * Returns the centroid. */
+ris_vec3 ris__resolve_group(uint32_t n, const float *contraction, const float *rest_distance_mm, const ris_vec3 *rest,
+                            float lambda, ris_vec3 *point);
+/* KA-35. Weight of straightening for closed-loop lengths now and at rest. */
+float ris__relax_weight(float length_mm, float rest_length_mm);
+/* KA-36. Height scale of segment i of count for length ratio rho. */
+float ris__bulge_factor(ris_muscle_kind kind, float rho, uint32_t i, uint32_t count);
+/* t^power for t in 0..1 from whole powers, linear between them: no libm. */
+float ris__power(float t, float power);

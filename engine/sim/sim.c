@@ -1,0 +1,293 @@
+/* Front of every simulation: argument checks, the order of the host stages (KA-30), divergence, settling, hash. The device half
+ * of the frame is the backend's `frame` (sim/cpu/cpu_sim.c, sim/vk/vk_sim.c). */
+#include "sim/rig.h"
+
+#include "base/clock.h"
+#include "base/hash.h"
+#include "model/model_impl.h"
+#include "model/vec3.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define LARGEST_MM 1e5f        /* a node this far out has diverged */
+#define REST_SPEED_MM_S 0.1f   /* design: at rest */
+#define REST_TICKS 15          /* 0.25 s */
+#define SETTLE_TICKS (20 * 60) /* 20 s */
+
+struct ris_sim {
+    const ris_model *model;
+    const ris_sim_impl *impl;
+    void *self;
+    char backend[256];
+    ris_rig rig;
+    ris_vec4 *scratch; /* (node_count) */
+    ris_sim_times times;
+};
+
+const char *ris_stage_name(ris_stage stage)
+{
+    static const char *const names[RIS_STAGE_COUNT] = {"anchor_shift", "bend", "spring_force", "verlet", "normal"};
+    return (unsigned)stage < RIS_STAGE_COUNT ? names[stage] : "?";
+}
+
+const char *ris_state_name(ris_state state)
+{
+    static const char *const names[RIS_STATE_COUNT] = {"position", "velocity_half", "velocity_prev", "force", "bend", "normal"};
+    return (unsigned)state < RIS_STATE_COUNT ? names[state] : "?";
+}
+
+ris_result ris__sim_create(const ris_model *model, const ris_sim_impl *impl, void *self, const char *backend_name, ris_sim **out,
+                           ris_error *err)
+{
+    *out = NULL;
+    ris_sim *sim = NULL;
+    ris_result result = ris__model_alloc(&sim, 1, sizeof *sim, "the simulation", err);
+    if (result != RIS_OK) {
+        impl->destroy(self);
+        return result;
+    }
+    sim->model = model;
+    sim->impl = impl;
+    sim->self = self;
+    snprintf(sim->backend, sizeof sim->backend, "%s", backend_name);
+    result = ris__rig_init(&sim->rig, model, err);
+    if (result == RIS_OK) {
+        result = ris__model_alloc(&sim->scratch, model->node_count, sizeof *sim->scratch, "the simulation", err);
+    }
+    if (result == RIS_OK) {
+        result = ris_sim_reset(sim, err);
+    }
+    if (result != RIS_OK) {
+        ris_sim_destroy(sim);
+        return result;
+    }
+    *out = sim;
+    return RIS_OK;
+}
+
+void ris_sim_destroy(ris_sim *sim)
+{
+    if (!sim) {
+        return;
+    }
+    sim->impl->destroy(sim->self);
+    ris__rig_finish(&sim->rig);
+    free(sim->scratch);
+    free(sim);
+}
+
+void *ris__sim_self(ris_sim *sim, const ris_sim_impl *impl)
+{
+    return sim && sim->impl == impl ? sim->self : NULL;
+}
+
+ris_result ris_sim_reset(ris_sim *sim, ris_error *err)
+{
+    const ris_model *model = sim->model;
+    static const ris_state zeroed[] = {RIS_STATE_VELOCITY_HALF, RIS_STATE_VELOCITY_PREV, RIS_STATE_FORCE, RIS_STATE_BEND};
+    ris__rig_reset(&sim->rig);
+    ris_result result = sim->impl->write(sim->self, RIS_STATE_POSITION, model->rest_position, err);
+    if (result == RIS_OK) {
+        result = sim->impl->write(sim->self, RIS_STATE_NORMAL, model->rest_normal, err);
+    }
+    memset(sim->scratch, 0, model->node_count * sizeof *sim->scratch);
+    for (size_t k = 0; result == RIS_OK && k < sizeof zeroed / sizeof zeroed[0]; ++k) {
+        result = sim->impl->write(sim->self, zeroed[k], sim->scratch, err);
+    }
+    return result;
+}
+
+/* The host stages, in order. */
+static void run_muscle_stages(ris_sim *sim, const float *pose)
+{
+    ris__jaw_pose(&sim->rig, pose);
+    ris__muscle_contract(&sim->rig, pose);
+    ris__muscle_constrain(&sim->rig);
+    ris__muscle_relax(&sim->rig);
+    ris__muscle_bulge(&sim->rig);
+    ris__muscle_attach(&sim->rig);
+}
+
+ris_result ris__sim_pose(ris_sim *sim, const float *pose, ris_anchor_frame *out, ris_error *err)
+{
+    for (uint32_t k = 0; k < sim->model->channel_count; ++k) {
+        if (!isfinite(pose[k])) {
+            return ris_fail(err, RIS_ERROR_USAGE, "channel %s of the pose is %g, expected a number", sim->model->channel[k].name,
+                            (double)pose[k]);
+        }
+    }
+    run_muscle_stages(sim, pose);
+    out->point = sim->rig.point;
+    out->delta = sim->rig.delta;
+    return RIS_OK;
+}
+
+ris_result ris__sim_stage(ris_sim *sim, ris_stage stage, const ris_anchor_frame *anchors, ris_error *err)
+{
+    if ((unsigned)stage >= RIS_STAGE_COUNT) {
+        return ris_fail(err, RIS_ERROR_USAGE, "there is no stage %d", (int)stage);
+    }
+    return sim->impl->stage(sim->self, stage, anchors, err);
+}
+
+/* Lowest node that is not finite or is absurdly far out, or node_count. */
+static uint32_t first_wild(const ris_vec4 *value, uint32_t count, float limit)
+{
+    for (uint32_t i = 0; i < count; ++i) {
+        if (!(fabsf(value[i].x) < limit && fabsf(value[i].y) < limit && fabsf(value[i].z) < limit)) {
+            return i;
+        }
+    }
+    return count;
+}
+
+/* Names the first stage whose result at the wild vertex is no number; a finite but huge position is the integrator's. */
+static ris_result report_divergence(ris_sim *sim, uint32_t vertex, ris_error *err)
+{
+    const char *stage = ris_stage_name(RIS_STAGE_VERLET);
+    const ris_vec3 anchor = v4_xyz(sim->rig.point[vertex].a);
+    if (!isfinite(anchor.x) || !isfinite(anchor.y) || !isfinite(anchor.z)) {
+        stage = "muscle_attach";
+    } else if (sim->impl->read(sim->self, RIS_STATE_FORCE, sim->scratch, err) == RIS_OK) {
+        const ris_vec4 *f = &sim->scratch[vertex];
+        if (!isfinite(f->x) || !isfinite(f->y) || !isfinite(f->z)) {
+            stage = ris_stage_name(RIS_STAGE_SPRING_FORCE);
+        }
+    }
+    return ris_fail(err, RIS_ERROR_DIVERGED, "the simulation diverged: stage %s, vertex %u", stage, vertex);
+}
+
+ris_result ris_sim_tick(ris_sim *sim, const float *pose, ris_error *err)
+{
+    const ris_model *model = sim->model;
+    ris_anchor_frame anchors;
+    memset(&sim->times, 0, sizeof sim->times);
+    const uint64_t start = ris__clock_ns();
+    ris_result result = ris__sim_pose(sim, pose, &anchors, err);
+    sim->times.muscle_ms = ris__clock_ms(start, ris__clock_ns());
+    if (result == RIS_OK) {
+        result = sim->impl->frame(sim->self, &anchors, model->head->tissue.substeps, &sim->times, err);
+    }
+    if (result == RIS_OK) {
+        result = sim->impl->read(sim->self, RIS_STATE_POSITION, sim->scratch, err);
+    }
+    if (result == RIS_OK) {
+        uint32_t wild = first_wild(sim->scratch, model->node_count, LARGEST_MM);
+        if (wild < model->node_count) {
+            return report_divergence(sim, wild, err);
+        }
+    }
+    return result;
+}
+
+ris_result ris_sim_settle(ris_sim *sim, const float *pose, double *out_time_s, ris_error *err)
+{
+    const uint32_t n = sim->model->node_count;
+    uint32_t quiet = 0, worst = 0;
+    float worst_speed = 0.0f;
+    for (uint32_t tick = 1; tick <= SETTLE_TICKS; ++tick) {
+        ris_result result = ris_sim_tick(sim, pose, err);
+        if (result == RIS_OK) {
+            result = sim->impl->read(sim->self, RIS_STATE_VELOCITY_HALF, sim->scratch, err);
+        }
+        if (result != RIS_OK) {
+            return result;
+        }
+        worst_speed = 0.0f;
+        for (uint32_t i = 0; i < n; ++i) {
+            const float speed2 = v3_dot(v4_xyz(sim->scratch[i]), v4_xyz(sim->scratch[i]));
+            if (speed2 > worst_speed) {
+                worst_speed = speed2;
+                worst = i;
+            }
+        }
+        worst_speed = sqrtf(worst_speed);
+        quiet = worst_speed <= REST_SPEED_MM_S ? quiet + 1 : 0;
+        if (quiet >= REST_TICKS) {
+            if (out_time_s) {
+                *out_time_s = tick * RIS_TICK_S;
+            }
+            return RIS_OK;
+        }
+    }
+    return ris_fail(err, RIS_ERROR_FAILED, "the pose did not come to rest in %d s: vertex %u still moves at %.3f mm/s", SETTLE_TICKS / 60,
+                    worst, (double)worst_speed);
+}
+
+ris_result ris_sim_read(ris_sim *sim, ris_state state, ris_vec4 *out, ris_error *err)
+{
+    if ((unsigned)state >= RIS_STATE_COUNT) {
+        return ris_fail(err, RIS_ERROR_USAGE, "there is no state %d", (int)state);
+    }
+    return sim->impl->read(sim->self, state, out, err);
+}
+
+ris_result ris_sim_write(ris_sim *sim, ris_state state, const ris_vec4 *in, ris_error *err)
+{
+    if ((unsigned)state >= RIS_STATE_COUNT) {
+        return ris_fail(err, RIS_ERROR_USAGE, "there is no state %d", (int)state);
+    }
+    return sim->impl->write(sim->self, state, in, err);
+}
+
+ris_result ris_sim_hash(ris_sim *sim, uint64_t *out, ris_error *err)
+{
+    static const ris_state states[] = {RIS_STATE_POSITION, RIS_STATE_VELOCITY_HALF, RIS_STATE_VELOCITY_PREV};
+    uint64_t hash = RIS_HASH_START;
+    for (size_t k = 0; k < sizeof states / sizeof states[0]; ++k) {
+        ris_result result = sim->impl->read(sim->self, states[k], sim->scratch, err);
+        if (result != RIS_OK) {
+            return result;
+        }
+        hash = ris__hash(hash, sim->scratch, sim->model->node_count * sizeof *sim->scratch);
+    }
+    *out = hash;
+    return RIS_OK;
+}
+
+const ris_sim_times *ris_sim_get_times(const ris_sim *sim)
+{
+    return &sim->times;
+}
+
+const ris_model *ris_sim_get_model(const ris_sim *sim)
+{
+    return sim->model;
+}
+
+const char *ris_sim_backend(const ris_sim *sim)
+{
+    return sim->backend;
+}
+
+static void write_transform(const ris_rigid *rigid, float out[12])
+{
+    const ris_vec3 turned = ris__rigid_rotate(rigid, rigid->point);
+    const ris_vec3 t = v3_add(v3_sub(rigid->point, turned), rigid->shift);
+    const float translation[3] = {t.x, t.y, t.z};
+    for (int r = 0; r < 3; ++r) {
+        memcpy(out + 4 * r, rigid->rotation + 3 * r, 3 * sizeof *out);
+        out[4 * r + 3] = translation[r];
+    }
+}
+
+void ris_sim_bone_transform(const ris_sim *sim, ris_bone bone, float out[12])
+{
+    static const ris_rigid skull = {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}, {0, 0, 0}, true};
+    switch (bone) {
+    case RIS_BONE_JAW: write_transform(&sim->rig.jaw, out); return;
+    case RIS_BONE_EYE_L: write_transform(&sim->rig.eye[0], out); return;
+    case RIS_BONE_EYE_R: write_transform(&sim->rig.eye[1], out); return;
+    case RIS_BONE_AUTO:
+    case RIS_BONE_SKULL:
+    case RIS_BONE_SKIN: break;
+    }
+    write_transform(&skull, out);
+}
+
+void ris_sim_head_transform(const ris_sim *sim, float out[12])
+{
+    write_transform(&sim->rig.head, out);
+}
