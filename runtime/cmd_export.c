@@ -1,0 +1,148 @@
+/* risorius export HEAD: the skin of a held pose, or of a moment of a clip, as OBJ in the order of skin.obj. */
+#include "backend.h"
+#include "player.h"
+#include "risorius/output.h"
+
+#include <stdlib.h>
+
+typedef struct export_args {
+    const char *head, *pose, *clip, *at, *out;
+    bool parts;
+} export_args;
+
+/* Brings the simulation to the state that is asked for. */
+static ris_result reach(const ris_backend *backend, const export_args *args, ris_error *err)
+{
+    const ris_model *model = backend->model;
+    ris_clip *clip = NULL;
+    ris_player player = {0};
+    double time_s = 0;
+    float *pose = calloc(model->channel_count + 1u, sizeof *pose);
+    ris_result r = pose ? RIS_OK : ris_fail(err, RIS_ERROR_MEMORY, "out of memory for a pose");
+    if (!r && args->clip) {
+        r = ris_clip_load(model, args->clip, &clip, err);
+        if (!r) {
+            r = cli_number("at", args->at, 0, ris_clip_duration_s(clip), &time_s, err);
+        }
+        if (!r) {
+            r = player_init(&player, backend->sim, clip, NULL, err);
+        }
+        while (!r && player.tick < player_tick_at(time_s)) {
+            r = player_tick(&player, err);
+            if (!r) {
+                r = interrupt_check(err);
+            }
+        }
+    } else if (!r) {
+        if (args->pose) {
+            r = ris_pose_parse(model, args->pose, pose, err);
+        }
+        if (!r) {
+            r = ris_sim_settle(backend->sim, pose, &time_s, err);
+        }
+    }
+    player_finish(&player);
+    ris_clip_destroy(clip);
+    free(pose);
+    return r;
+}
+
+/* Writes the skin and, with --parts, everything else, as objects of one file. */
+static ris_result write_obj(const ris_backend *backend, const export_args *args, ris_error *err)
+{
+    const ris_head *head = backend->model->head;
+    uint32_t node_count = backend->model->node_count, part_count = args->parts ? head->part_count : 0;
+    ris_obj_object *object = calloc(part_count + 1u, sizeof *object);
+    ris_vec4 **place = calloc(part_count + 1u, sizeof *place);
+    ris_result r = RIS_OK;
+    if (!object || !place || !(place[0] = calloc(node_count, sizeof **place))) {
+        r = ris_fail(err, RIS_ERROR_MEMORY, "out of memory for %u vertices", node_count);
+        goto fail;
+    }
+    r = ris_sim_read(backend->sim, RIS_STATE_POSITION, place[0], err);
+    object[0] = (ris_obj_object){"skin", &head->skin, place[0]};
+    for (uint32_t i = 0; !r && i < part_count; i++) {
+        const ris_mesh *mesh = &head->part[i].mesh;
+        place[i + 1] = calloc(mesh->vertex_count, sizeof **place);
+        if (!place[i + 1]) {
+            r = ris_fail(err, RIS_ERROR_MEMORY, "out of memory for part '%s'", head->part[i].name);
+            goto fail;
+        }
+        r = ris_sim_part(backend->sim, i, place[0], place[i + 1], err);
+        object[i + 1] = (ris_obj_object){head->part[i].name, mesh, place[i + 1]};
+    }
+    if (!r) {
+        r = interrupt_check(err);
+    }
+    if (!r) {
+        r = ris_obj_write(args->out, object, part_count + 1u, err);
+    }
+fail:
+    for (uint32_t i = 0; place && i <= part_count; i++) {
+        free(place[i]);
+    }
+    free(place);
+    free(object);
+    return r;
+}
+
+static ris_result check_args(const export_args *args, ris_error *err)
+{
+    if (!args->out) {
+        return ris_fail(err, RIS_ERROR_USAGE, "export needs -o FILE.obj");
+    }
+    if (args->pose && args->clip) {
+        return ris_fail(err, RIS_ERROR_USAGE, "export takes --pose or --clip, not both");
+    }
+    if (!args->clip != !args->at) {
+        return ris_fail(err, RIS_ERROR_USAGE, "export --clip C and --at T belong together");
+    }
+    return RIS_OK;
+}
+
+static ris_result run(ris_cli *cli, int argc, char **argv, ris_error *err)
+{
+    export_args args = {0};
+    const cli_option options[] = {
+        {"pose", 'p', "POSE", "name=value[,name=value...]; without it the neutral head at rest", NULL, &args.pose, NULL},
+        {"clip", 'c', "CLIP", "a clip, stopped at --at", NULL, &args.clip, NULL},
+        {"at", 't', "SECONDS", "the moment of the clip", NULL, &args.at, NULL},
+        {"output", 'o', "FILE.obj", "the file to write", NULL, &args.out, NULL},
+        {"parts", 0, NULL, "eyes, teeth, tongue and the rest too", &args.parts, NULL, NULL},
+        {0},
+    };
+    uint32_t count;
+    ris_result r = cli_parse(cli, &cmd_export, options, argc, argv, &args.head, 1, &count, err);
+    if (r || cli->done) {
+        return r;
+    }
+    r = cli_need_head(&cmd_export, count, err);
+    if (!r) {
+        r = check_args(&args, err);
+    }
+    if (r) {
+        return r;
+    }
+    ris_backend backend;
+    r = backend_open(&backend, cli, args.head, &(backend_need){.sim = true}, err);
+    if (!r) {
+        r = reach(&backend, &args, err);
+    }
+    if (!r) {
+        r = write_obj(&backend, &args, err);
+    }
+    if (!r && !cli->quiet) {
+        fprintf(stderr, "wrote %s (%s)\n", args.out, ris_sim_backend(backend.sim));
+    }
+    backend_close(&backend);
+    return r;
+}
+
+const cli_command cmd_export = {
+    .name = "export",
+    .usage = "HEAD [--pose P | --clip C --at T] -o FILE.obj [--parts]",
+    .summary = "write the skin of a held pose or of a moment of a clip as OBJ",
+    .detail = "A pose is held until no vertex is faster than 0.1 mm/s for 0.25 s of simulated time; if that is not\n"
+              "reached in 20 s the command fails and names the vertex. Vertices keep the order of skin.obj, in mm.\n",
+    .run = run,
+};

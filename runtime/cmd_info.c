@@ -1,0 +1,134 @@
+/* risorius info HEAD: counts, springs, stable time step, muscles and channels of a head. */
+#include "backend.h"
+
+static const char *tissue_name(const ris_model *model)
+{
+    return model->head->tissue.model == RIS_TISSUE_KAEHLER ? "kaehler" : "risorius";
+}
+
+static uint32_t muscle_nodes(const ris_model *model, uint32_t muscle)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < model->binding_start[model->node_count]; i++) {
+        count += model->binding[i].muscle == muscle;
+    }
+    return count;
+}
+
+static void print_text(const char *path, const ris_model *model)
+{
+    const ris_head *head = model->head;
+    const ris_tissue_def *tissue = &head->tissue;
+    double dt_ms = 1000.0 / 60.0 / tissue->substeps;
+    printf("head        %s\n", path);
+    printf("skin        %u vertices, %u faces, %u triangles, %u texture coordinates\n", model->node_count,
+           head->skin.face_count, model->triangle_count, head->skin.uv_count);
+    printf("simulated   %u moving nodes (region '%s'), %u springs\n", model->moving_count, head->simulated,
+           model->spring_count);
+    printf("tissue      %s, node mass %.4g g, %u substeps of %.4f ms, stable up to %.4f ms\n", tissue_name(model),
+           (double)model->mass_g, tissue->substeps, dt_ms, (double)model->stable_dt_s * 1000.0);
+    printf("rig         %u muscles, %u fibres, %u control points, %u constraint groups\n", model->muscle_count,
+           model->fiber_count, model->fiber_point_count, model->group_count);
+    printf("muscles\n");
+    for (uint32_t i = 0; i < model->muscle_count; i++) {
+        const ris_muscle *m = &model->muscle[i];
+        printf("  %-32s %-9s on %-6s %2u fibres x %2u points, shortens to %2.0f %%, acts on %u nodes\n", m->name,
+               m->kind == RIS_MUSCLE_LINEAR ? "linear" : "sphincter", m->on_jaw ? "jaw" : "skull", m->fiber_count,
+               m->point_count, (double)m->max_shortening * 100.0, muscle_nodes(model, i));
+    }
+    printf("channels\n");
+    for (uint32_t i = model->muscle_count; i < model->channel_count; i++) {
+        printf("  %-32s %g .. %g\n", model->channel[i].name, (double)model->channel[i].minimum,
+               (double)model->channel[i].maximum);
+    }
+    printf("expressions\n");
+    for (uint32_t i = 0; i < head->expression_count; i++) {
+        printf("  %-32s", head->expression[i].name);
+        for (uint32_t k = 0; k < head->expression[i].term_count; k++) {
+            const ris_term *term = &head->expression[i].term[k];
+            printf("%s%s=%g", k ? "," : " ", term->channel, (double)term->value);
+        }
+        printf("\n");
+    }
+    printf("parts\n");
+    for (uint32_t i = 0; i < head->part_count; i++) {
+        printf("  %-32s %u vertices, %u faces\n", head->part[i].name, head->part[i].mesh.vertex_count,
+               head->part[i].mesh.face_count);
+    }
+}
+
+static void print_json_muscles(const ris_model *model)
+{
+    printf("  \"muscles\": [");
+    for (uint32_t i = 0; i < model->muscle_count; i++) {
+        const ris_muscle *m = &model->muscle[i];
+        printf("%s\n    {\"name\": ", i ? "," : "");
+        cli_json_string(stdout, m->name);
+        printf(", \"kind\": \"%s\", \"bone\": \"%s\", \"fibers\": %u, \"points\": %u, \"max_shortening\": %.6g, "
+               "\"nodes\": %u}",
+               m->kind == RIS_MUSCLE_LINEAR ? "linear" : "sphincter", m->on_jaw ? "jaw" : "skull", m->fiber_count,
+               m->point_count, (double)m->max_shortening, muscle_nodes(model, i));
+    }
+    printf("\n  ],\n  \"channels\": [");
+    for (uint32_t i = 0; i < model->channel_count; i++) {
+        printf("%s\n    {\"name\": ", i ? "," : "");
+        cli_json_string(stdout, model->channel[i].name);
+        printf(", \"minimum\": %.9g, \"maximum\": %.9g}", (double)model->channel[i].minimum,
+               (double)model->channel[i].maximum);
+    }
+    printf("\n  ],\n");
+}
+
+static void print_json(const char *path, const ris_model *model)
+{
+    const ris_head *head = model->head;
+    printf("{\n  \"head\": ");
+    cli_json_string(stdout, path);
+    printf(",\n  \"vertices\": %u,\n  \"faces\": %u,\n  \"triangles\": %u,\n  \"uvs\": %u,\n", model->node_count,
+           head->skin.face_count, model->triangle_count, head->skin.uv_count);
+    printf("  \"moving_nodes\": %u,\n  \"springs\": %u,\n  \"tissue\": \"%s\",\n  \"node_mass_g\": %.9g,\n",
+           model->moving_count, model->spring_count, tissue_name(model), (double)model->mass_g);
+    printf("  \"substeps\": %u,\n  \"dt_s\": %.9g,\n  \"stable_dt_s\": %.9g,\n", head->tissue.substeps,
+           1.0 / 60.0 / head->tissue.substeps, (double)model->stable_dt_s);
+    print_json_muscles(model);
+    printf("  \"expressions\": [");
+    for (uint32_t i = 0; i < head->expression_count; i++) {
+        printf("%s", i ? ", " : "");
+        cli_json_string(stdout, head->expression[i].name);
+    }
+    printf("],\n  \"parts\": [");
+    for (uint32_t i = 0; i < head->part_count; i++) {
+        printf("%s", i ? ", " : "");
+        cli_json_string(stdout, head->part[i].name);
+    }
+    printf("]\n}\n");
+}
+
+static ris_result run(ris_cli *cli, int argc, char **argv, ris_error *err)
+{
+    const cli_option options[] = {{0}};
+    const char *head = NULL;
+    uint32_t count;
+    ris_result r = cli_parse(cli, &cmd_info, options, argc, argv, &head, 1, &count, err);
+    if (r || cli->done) {
+        return r;
+    }
+    r = cli_need_head(&cmd_info, count, err);
+    if (r) {
+        return r;
+    }
+    ris_backend backend;
+    r = backend_open(&backend, cli, head, &(backend_need){0}, err);
+    if (!r) {
+        (cli->json ? print_json : print_text)(head, backend.model);
+    }
+    backend_close(&backend);
+    return r;
+}
+
+const cli_command cmd_info = {
+    .name = "info",
+    .usage = "HEAD [--json]",
+    .summary = "counts, springs, stable time step, muscles and channels of a head",
+    .run = run,
+};
