@@ -61,6 +61,10 @@ void ris_sim_bone_transform(const ris_sim *sim, ris_bone bone, float out[12]);
 /* Head pose channels as a row-major 3x4, applied to everything when drawing. */
 void ris_sim_head_transform(const ris_sim *sim, float out[12]);
 
+/* Vertices of part `part` of the head (vertex_count of its mesh, w 1): by its bone, or riding on the skin at position
+ * (node_count, as read from sim). Without the head pose, as the skin. RIS_ERROR_USAGE: no such part. */
+ris_result ris_sim_part(const ris_sim *sim, uint32_t part, const ris_vec4 *position, ris_vec4 *out, ris_error *err);
+
 #ifdef __cplusplus
 }
 #endif

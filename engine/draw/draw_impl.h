@@ -1,0 +1,65 @@
+/* Inside of ris_draw. One picture: frame.c. What is drawn: scene.h. Structs shared with shaders: draw_shared.h. */
+#pragma once
+
+#include "risorius/draw.h"
+
+#include "draw/scene.h"
+#include "vk/vk.h"
+
+#define RIS_DRAW_COLOR_FORMAT VK_FORMAT_R8G8B8A8_SRGB
+#define RIS_DRAW_DEPTH_FORMAT VK_FORMAT_D32_SFLOAT
+#define RIS_DRAW_SHADOW_SIDE 1024u
+
+/* Images of one size. color is the resolved picture; it rests in TRANSFER_SRC_OPTIMAL between frames. */
+typedef struct ris_draw_target {
+    uint32_t width, height;
+    ris_vk_image many, depth, color; /* many: 4 samples a pixel */
+    ris_vk_buffer readback;
+} ris_draw_target;
+
+/* The graphics pipelines, in drawing order. */
+typedef enum ris_draw_pipe {
+    RIS_DRAW_PIPE_SHADOW, RIS_DRAW_PIPE_BACKGROUND, RIS_DRAW_PIPE_SKIN, RIS_DRAW_PIPE_EYE, RIS_DRAW_PIPE_MOUTH,
+    RIS_DRAW_PIPE_HAIR, RIS_DRAW_PIPE_CORNEA, RIS_DRAW_PIPE_WIRE, RIS_DRAW_PIPE_COUNT
+} ris_draw_pipe;
+
+/* The scene on the device. */
+typedef struct ris_draw_store {
+    ris_vk_buffer node; /* uploaded positions of a simulation elsewhere (UPLOAD) */
+    ris_vk_buffer view; /* ris_draw_view (UPLOAD) */
+    ris_vk_buffer term_start, term, ring_start, ring, ride;
+    ris_vk_buffer position, normal, rest, corner, index, line;
+    ris_vk_image *texture; /* (texture_count + 1), the last one white */
+    uint32_t texture_count;
+    VkSampler sampler, shadow_sampler;
+} ris_draw_store;
+
+struct ris_draw {
+    ris_device *device;
+    const ris_model *model;
+    ris_draw_scene scene; /* items and counts; the big arrays are freed once uploaded */
+    ris_draw_store store;
+    ris_draw_target target;
+    ris_vk_image shadow;
+    ris_vk_sets compute_sets;
+    ris_vk_sets *graphics_sets; /* one set per texture (store.texture_count + 1) */
+    VkPipelineLayout compute_layout, graphics_layout;
+    VkPipeline refine, normal, ride;
+    VkPipeline pipe[RIS_DRAW_PIPE_COUNT];
+    ris_vk_cmd cmd, copy;
+    bool wireframe, drawn;
+};
+
+/* store.c */
+ris_result ris__draw_store_create(ris_draw *draw, ris_error *err);
+void ris__draw_store_finish(ris_draw *draw);
+/* texture.c: an sRGB image file with mips. RIS_ERROR_DATA names the file. pixels 1x1 white when path is NULL. */
+ris_result ris__draw_texture_load(ris_device *device, const char *path, ris_vk_image *out, ris_error *err);
+/* target.c */
+ris_result ris__draw_target_create(ris_device *device, uint32_t width, uint32_t height, ris_draw_target *out, ris_error *err);
+void ris__draw_target_finish(ris_device *device, ris_draw_target *target);
+/* pipes.c: layouts, sets and pipelines */
+ris_result ris__draw_pipes_create(ris_draw *draw, ris_error *err);
+void ris__draw_pipes_finish(ris_draw *draw);
+/* view.c: fills what is the same for the whole frame */
+void ris__draw_view_fill(const ris_draw *draw, const ris_camera *camera, const float head[12], ris_draw_view *out);

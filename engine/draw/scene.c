@@ -1,0 +1,383 @@
+/* Flattens skin and parts (KA-06) into the arrays of a ris_draw_scene. */
+#include "draw/scene.h"
+
+#include "draw/occlusion.h"
+#include "draw/refine.h"
+#include "sim/ride.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define REFINE_LIMIT 40000u /* faces; a finer skin is smooth enough as it is */
+
+/* One mesh on its way into the scene. */
+typedef struct piece {
+    const ris_part_def *part; /* NULL = the skin */
+    const ris_mesh *mesh;
+    ris_refined refined;
+    ris_vec3 *position, *normal; /* at rest (refined.vertex_count) */
+    float *occlusion;
+    ris_ride *ride;
+    uint32_t *ride_triangle; /* into model->triangle */
+} piece;
+
+static void *room(size_t count, size_t size)
+{
+    return calloc(count > 0 ? count : 1, size);
+}
+
+static ris_vec3 plus(ris_vec3 a, ris_vec3 b, float factor)
+{
+    return (ris_vec3){a.x + factor * b.x, a.y + factor * b.y, a.z + factor * b.z};
+}
+
+static ris_vec3 mix3(ris_vec3 a, ris_vec3 b, ris_vec3 c, const float w[3])
+{
+    return (ris_vec3){w[0] * a.x + w[1] * b.x + w[2] * c.x, w[0] * a.y + w[1] * b.y + w[2] * c.y,
+                      w[0] * a.z + w[1] * b.z + w[2] * c.z};
+}
+
+static bool is_mouth(ris_material material)
+{
+    return material == RIS_MATERIAL_TEETH || material == RIS_MATERIAL_GUM || material == RIS_MATERIAL_TONGUE;
+}
+
+static uint32_t levels_for(const piece *from)
+{
+    if (from->part == NULL) {
+        return from->mesh->face_count <= REFINE_LIMIT ? 1 : 0;
+    }
+    return from->part->material == RIS_MATERIAL_TONGUE || from->part->material == RIS_MATERIAL_GUM ? 1 : 0;
+}
+
+static ris_result build_piece(const ris_model *model, piece *to, ris_error *err)
+{
+    ris_result result = ris__refine(to->mesh, levels_for(to), &to->refined, err);
+    if (result != RIS_OK) {
+        return result;
+    }
+    uint32_t count = to->refined.vertex_count;
+    to->position = room(count, sizeof *to->position);
+    to->normal = room(count, sizeof *to->normal);
+    to->occlusion = room(count, sizeof *to->occlusion);
+    if (to->position == NULL || to->normal == NULL || to->occlusion == NULL) {
+        return ris_fail(err, RIS_ERROR_MEMORY, "out of memory for drawing %u vertices", (unsigned)count);
+    }
+    ris__refined_position(&to->refined, to->mesh->position, to->position);
+    ris__refined_normal(&to->refined, to->position, to->normal);
+    for (uint32_t i = 0; i < count; i++) {
+        to->occlusion[i] = 1.0f;
+    }
+    if (to->part != NULL && to->part->bone == RIS_BONE_SKIN) {
+        to->ride = room(to->mesh->vertex_count, sizeof *to->ride);
+        to->ride_triangle = room(to->mesh->vertex_count, sizeof *to->ride_triangle);
+        if (to->ride == NULL || to->ride_triangle == NULL) {
+            return ris_fail(err, RIS_ERROR_MEMORY, "out of memory for part \"%s\"", to->part->name);
+        }
+        result = ris__ride_bind(model, to->mesh, to->ride, to->ride_triangle, err);
+    }
+    return result;
+}
+
+static void finish_piece(piece *from)
+{
+    ris__refined_finish(&from->refined);
+    free(from->position);
+    free(from->normal);
+    free(from->occlusion);
+    free(from->ride);
+    free(from->ride_triangle);
+}
+
+/* Skin and eyes shade each other; the rest of the parts has its own rules in its shader. */
+static ris_result occlude(piece *all, uint32_t count, ris_error *err)
+{
+    ris_occluder *occluder = room(count, sizeof *occluder);
+    uint32_t **index = room(count, sizeof *index);
+    uint32_t used = 0;
+    ris_result result = occluder && index ? RIS_OK : ris_fail(err, RIS_ERROR_MEMORY, "out of memory for occlusion");
+    for (uint32_t i = 0; i < count && result == RIS_OK; i++) {
+        const ris_refined *from = &all[i].refined;
+        if (all[i].part != NULL && all[i].part->material != RIS_MATERIAL_EYE) {
+            continue;
+        }
+        index[i] = room(from->index_count, sizeof **index);
+        if (index[i] == NULL) {
+            result = ris_fail(err, RIS_ERROR_MEMORY, "out of memory for occlusion");
+            break;
+        }
+        for (uint32_t k = 0; k < from->index_count; k++) {
+            index[i][k] = from->corner[from->index[k]].vertex;
+        }
+        occluder[used++] = (ris_occluder){all[i].position, index[i], from->index_count};
+    }
+    for (uint32_t i = 0; i < count && result == RIS_OK; i++) {
+        bool seen = all[i].part == NULL || all[i].part->material == RIS_MATERIAL_EYE ||
+                    all[i].part->material == RIS_MATERIAL_CORNEA;
+        if (seen) {
+            result = ris__occlusion(occluder, used, all[i].position, all[i].normal, all[i].refined.vertex_count,
+                                    all[i].occlusion, err);
+        }
+    }
+    for (uint32_t i = 0; i < count && index != NULL; i++) {
+        free(index[i]);
+    }
+    free(index);
+    free(occluder);
+    return result;
+}
+
+/* Moves a binding from a triangle of the coarse skin to the drawn surface of the same face, keeping the height above it. */
+static ris_draw_ride ride_on_surface(const piece *skin, const ris_model *model, const piece *part, uint32_t vertex,
+                                     uint32_t face, uint32_t first_quad)
+{
+    const uint32_t *node = model->triangle + 3 * (size_t)part->ride_triangle[vertex];
+    const ris_vec3 *coarse = skin->mesh->position;
+    const ris_ride *bound = &part->ride[vertex];
+    ris_vec3 foot = mix3(coarse[node[0]], coarse[node[1]], coarse[node[2]], bound->share);
+    ris_vec3 away = plus(part->mesh->position[vertex], foot, -1.0f);
+    ris_draw_ride best = {0};
+    float nearest = FLT_MAX;
+    for (uint32_t q = first_quad; q < skin->refined.quad_count && skin->refined.quad_face[q] == face; q++) {
+        const uint32_t *quad = skin->refined.quad + 4 * (size_t)q;
+        for (uint32_t half = 0; half < (quad[2] == quad[3] ? 1u : 2u); half++) {
+            uint32_t a = quad[0], b = quad[1 + half], c = quad[2 + half];
+            ris_vec3 pa = skin->position[a], pb = skin->position[b], pc = skin->position[c], frame[3];
+            float share[3], distance = ris__ride_nearest(foot, pa, pb, pc, share);
+            if (distance >= nearest || !ris__ride_frame(pa, pb, pc, frame)) {
+                continue;
+            }
+            nearest = distance;
+            ris_vec3 p = plus(mix3(pa, pb, pc, share), away, 1.0f), n = part->normal[vertex];
+            ris_vec3 offset = ris__ride_offset(p, pa, pb, pc, share);
+            best = (ris_draw_ride){.a = a, .b = b, .c = c, .share = {share[0], share[1], share[2], 0.0f},
+                                   .offset = {offset.x, offset.y, offset.z, 0.0f}};
+            best.normal = (ris_vec4){n.x * frame[0].x + n.y * frame[0].y + n.z * frame[0].z,
+                                     n.x * frame[1].x + n.y * frame[1].y + n.z * frame[1].z,
+                                     n.x * frame[2].x + n.y * frame[2].y + n.z * frame[2].z, 0.0f};
+        }
+    }
+    return best;
+}
+
+/* Face of the skin mesh each triangle of the model came from, and the first drawn quad of each face. */
+static ris_result add_rides(const ris_model *model, const piece *skin, const piece *part, uint32_t first_vertex,
+                            ris_draw_scene *out, ris_error *err)
+{
+    const ris_mesh *mesh = skin->mesh;
+    uint32_t corners = mesh->face_start[mesh->face_count];
+    uint32_t *corner_face = room(corners, sizeof *corner_face), *first_quad = room(mesh->face_count, sizeof *first_quad);
+    if (corner_face == NULL || first_quad == NULL) {
+        free(corner_face);
+        free(first_quad);
+        return ris_fail(err, RIS_ERROR_MEMORY, "out of memory for part \"%s\"", part->part->name);
+    }
+    for (uint32_t f = 0; f < mesh->face_count; f++) {
+        for (uint32_t c = mesh->face_start[f]; c < mesh->face_start[f + 1]; c++) {
+            corner_face[c] = f;
+        }
+    }
+    for (uint32_t q = skin->refined.quad_count; q-- > 0;) {
+        first_quad[skin->refined.quad_face[q]] = q;
+    }
+    for (uint32_t v = 0; v < part->mesh->vertex_count; v++) {
+        uint32_t face = corner_face[model->triangle_corner[3 * (size_t)part->ride_triangle[v]]];
+        ris_draw_ride ride = ride_on_surface(skin, model, part, v, face, first_quad[face]);
+        ride.target = first_vertex + v;
+        out->ride[out->ride_count++] = ride;
+    }
+    free(corner_face);
+    free(first_quad);
+    return RIS_OK;
+}
+
+static uint32_t texture_index(ris_draw_scene *out, const char *path)
+{
+    if (path == NULL) {
+        return UINT32_MAX;
+    }
+    for (uint32_t i = 0; i < out->texture_count; i++) {
+        if (strcmp(out->texture[i], path) == 0) {
+            return i;
+        }
+    }
+    out->texture[out->texture_count] = path;
+    return out->texture_count++;
+}
+
+/* Appends the surface of one piece. Room was made by reserve. */
+static void append(ris_draw_scene *out, const ris_head *head, const piece *from)
+{
+    const ris_refined *in = &from->refined;
+    uint32_t first_vertex = out->vertex_count, first_corner = out->corner_count;
+    for (uint32_t i = 0; i < in->vertex_count; i++) {
+        ris_vec3 p = from->position[i], n = from->normal[i];
+        out->position[first_vertex + i] = (ris_vec4){p.x, p.y, p.z, 1.0f};
+        out->normal[first_vertex + i] = (ris_vec4){n.x, n.y, n.z, 0.0f};
+        out->rest[first_vertex + i] = (ris_vec4){p.x, p.y, p.z, from->occlusion[i]};
+        out->low = (ris_vec3){fminf(out->low.x, p.x), fminf(out->low.y, p.y), fminf(out->low.z, p.z)};
+        out->high = (ris_vec3){fmaxf(out->high.x, p.x), fmaxf(out->high.y, p.y), fmaxf(out->high.z, p.z)};
+    }
+    for (uint32_t i = 0; i < in->corner_count; i++) {
+        out->corner[first_corner + i] = in->corner[i];
+        out->corner[first_corner + i].vertex += first_vertex;
+    }
+    ris_draw_item *item = &out->item[out->item_count++];
+    const ris_part_def *part = from->part;
+    *item = (ris_draw_item){.material = part ? part->material : RIS_MATERIAL_SKIN,
+                            .bone = part ? part->bone : RIS_BONE_SKIN,
+                            .first_index = out->index_count, .index_count = in->index_count,
+                            .tint = part ? part->tint : (ris_vec3){0.52f, 0.28f, 0.19f},
+                            .pivot = part ? part->pivot : (ris_vec3){0.0f, 0.0f, 0.0f}};
+    item->texture = texture_index(out, part ? part->color : head->color);
+    for (uint32_t i = 0; i < in->index_count; i++) {
+        out->index[out->index_count++] = in->index[i] + first_corner;
+    }
+    out->vertex_count += in->vertex_count;
+    out->corner_count += in->corner_count;
+}
+
+/* Edges of the coarse skin mesh: the two sides of each quad at its first corner. */
+static void add_lines(ris_draw_scene *out, const ris_refined *skin)
+{
+    uint32_t at = 0;
+    for (uint32_t q = 0; q < skin->quad_count; q++) {
+        bool triangle = skin->quad[4 * q + 2] == skin->quad[4 * q + 3];
+        out->line[out->line_count++] = skin->index[at];
+        out->line[out->line_count++] = skin->index[at + 1];
+        out->line[out->line_count++] = skin->index[at];
+        out->line[out->line_count++] = skin->index[at + (triangle ? 2 : 5)];
+        at += triangle ? 3 : 6;
+    }
+}
+
+static bool reserve(ris_draw_scene *out, const piece *all, uint32_t count)
+{
+    size_t vertices = 0, corners = 0, indices = 0, rides = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        vertices += all[i].refined.vertex_count;
+        corners += all[i].refined.corner_count;
+        indices += all[i].refined.index_count;
+        rides += all[i].ride != NULL ? all[i].mesh->vertex_count : 0;
+    }
+    out->position = room(vertices, sizeof *out->position);
+    out->normal = room(vertices, sizeof *out->normal);
+    out->rest = room(vertices, sizeof *out->rest);
+    out->corner = room(corners, sizeof *out->corner);
+    out->index = room(indices, sizeof *out->index);
+    out->line = room(4 * (size_t)all[0].refined.quad_count, sizeof *out->line);
+    out->ride = room(rides, sizeof *out->ride);
+    out->item = room(count, sizeof *out->item);
+    out->texture = room(count, sizeof *out->texture);
+    out->low = (ris_vec3){FLT_MAX, FLT_MAX, FLT_MAX};
+    out->high = (ris_vec3){-FLT_MAX, -FLT_MAX, -FLT_MAX};
+    return out->position && out->normal && out->rest && out->corner && out->index && out->line && out->ride &&
+           out->item && out->texture;
+}
+
+/* Drawing order: opaque first, hair by coverage next, clear shells last. */
+static int draw_rank(const piece *of)
+{
+    if (of->part == NULL) {
+        return 0;
+    }
+    return of->part->material == RIS_MATERIAL_CORNEA ? 3 : of->part->material == RIS_MATERIAL_HAIR ? 2 : 1;
+}
+
+static void find_mouth(ris_draw_scene *out, const piece *all, uint32_t count)
+{
+    float front = -FLT_MAX;
+    for (uint32_t i = 0; i < count; i++) {
+        for (uint32_t v = 0; all[i].part != NULL && is_mouth(all[i].part->material) && v < all[i].mesh->vertex_count; v++) {
+            front = fmaxf(front, all[i].mesh->position[v].z);
+        }
+    }
+    out->mouth = (ris_vec4){front > -FLT_MAX ? front : 0.0f, 32.0f, 0.0f, 0.0f};
+}
+
+static ris_result assemble(const ris_model *model, piece *all, uint32_t count, ris_draw_scene *out, ris_error *err)
+{
+    if (!reserve(out, all, count)) {
+        return ris_fail(err, RIS_ERROR_MEMORY, "out of memory for drawing the head");
+    }
+    for (int rank = 0; rank <= 3; rank++) {
+        for (uint32_t i = 0; i < count; i++) {
+            if (draw_rank(&all[i]) != rank) {
+                continue;
+            }
+            uint32_t first_vertex = out->vertex_count;
+            append(out, model->head, &all[i]);
+            if (all[i].ride != NULL) {
+                ris_result result = add_rides(model, &all[0], &all[i], first_vertex, out, err);
+                if (result != RIS_OK) {
+                    return result;
+                }
+            }
+        }
+    }
+    add_lines(out, &all[0].refined);
+    find_mouth(out, all, count);
+    /* the skin keeps its weights and rings: taken over, not copied */
+    ris_refined *skin = &all[0].refined;
+    out->skin_count = skin->vertex_count;
+    out->term_count = skin->term_count;
+    out->ring_count = skin->ring_start[skin->vertex_count];
+    out->term_start = skin->term_start;
+    out->term = skin->term;
+    out->ring_start = skin->ring_start;
+    out->ring = skin->ring;
+    skin->term_start = skin->ring_start = skin->ring = NULL;
+    skin->term = NULL;
+    return RIS_OK;
+}
+
+ris_result ris__draw_scene_build(const ris_model *model, ris_draw_scene *out, ris_error *err)
+{
+    const ris_head *head = model->head;
+    uint32_t count = head->part_count + 1;
+    *out = (ris_draw_scene){0};
+    piece *all = room(count, sizeof *all);
+    if (all == NULL) {
+        return ris_fail(err, RIS_ERROR_MEMORY, "out of memory for drawing the head");
+    }
+    ris_result result = RIS_OK;
+    for (uint32_t i = 0; i < count && result == RIS_OK; i++) {
+        all[i].part = i > 0 ? &head->part[i - 1] : NULL;
+        all[i].mesh = i > 0 ? &head->part[i - 1].mesh : &head->skin;
+        result = build_piece(model, &all[i], err);
+    }
+    if (result == RIS_OK) {
+        result = occlude(all, count, err);
+    }
+    if (result == RIS_OK) {
+        result = assemble(model, all, count, out, err);
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        finish_piece(&all[i]);
+    }
+    free(all);
+    if (result != RIS_OK) {
+        ris__draw_scene_finish(out);
+    }
+    return result;
+}
+
+void ris__draw_scene_finish(ris_draw_scene *scene)
+{
+    free(scene->term_start);
+    free(scene->term);
+    free(scene->ring_start);
+    free(scene->ring);
+    free(scene->position);
+    free(scene->normal);
+    free(scene->rest);
+    free(scene->corner);
+    free(scene->index);
+    free(scene->line);
+    free(scene->ride);
+    free(scene->item);
+    free((void *)scene->texture);
+    *scene = (ris_draw_scene){0};
+}

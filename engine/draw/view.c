@@ -1,0 +1,121 @@
+/* Cameras, lamps and the matrices of a frame. */
+#include "draw/draw_impl.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#define PI 3.14159265358979f
+
+static float dot(ris_vec3 a, ris_vec3 b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+static ris_vec3 cross(ris_vec3 a, ris_vec3 b)
+{
+    return (ris_vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+static ris_vec3 minus(ris_vec3 a, ris_vec3 b)
+{
+    return (ris_vec3){a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+/* Unit vector; fallback where v has no length. */
+static ris_vec3 unit(ris_vec3 v, ris_vec3 fallback)
+{
+    float length = sqrtf(dot(v, v));
+    return length > 1e-6f ? (ris_vec3){v.x / length, v.y / length, v.z / length} : fallback;
+}
+
+bool ris_camera_named(const ris_model *model, const char *name, ris_camera *out)
+{
+    float turn_deg;
+    if (strcmp(name, "front") == 0) {
+        turn_deg = 0.0f;
+    } else if (strcmp(name, "34") == 0) {
+        turn_deg = 38.0f;
+    } else if (strcmp(name, "profile") == 0) {
+        turn_deg = 90.0f;
+    } else {
+        return false;
+    }
+    ris_vec3 low = {FLT_MAX, FLT_MAX, FLT_MAX}, high = {-FLT_MAX, -FLT_MAX, -FLT_MAX};
+    bool any_moving = model->moving_count > 0;
+    for (uint32_t i = 0; i < model->node_count; i++) {
+        ris_vec4 p = model->rest_position[i];
+        if (p.w > 0.0f || !any_moving) {
+            low = (ris_vec3){fminf(low.x, p.x), fminf(low.y, p.y), fminf(low.z, p.z)};
+            high = (ris_vec3){fmaxf(high.x, p.x), fmaxf(high.y, p.y), fmaxf(high.z, p.z)};
+        }
+    }
+    ris_vec3 centre = {0.5f * (low.x + high.x), 0.5f * (low.y + high.y), 0.5f * (low.z + high.z)};
+    ris_vec3 size = minus(high, low);
+    float half = 0.5f * fmaxf(size.y, 0.8f * fmaxf(size.x, size.z)) * 1.12f, fov_deg = 18.0f;
+    float away = half / tanf(0.5f * fov_deg * PI / 180.0f) + 0.5f * size.z;
+    float turn = turn_deg * PI / 180.0f;
+    *out = (ris_camera){.eye = {centre.x + away * sinf(turn), centre.y, centre.z + away * cosf(turn)},
+                        .target = centre, .up = {0.0f, 1.0f, 0.0f}, .fov_y_deg = fov_deg};
+    return true;
+}
+
+/* Rows of world -> clip for a camera; depth 0 near, 1 far, y down. */
+static void camera_rows(const ris_camera *camera, float aspect, float near, float far, ris_vec4 out[4])
+{
+    ris_vec3 z = unit(minus(camera->eye, camera->target), (ris_vec3){0.0f, 0.0f, 1.0f});
+    ris_vec3 x = unit(cross(camera->up, z), (ris_vec3){1.0f, 0.0f, 0.0f}), y = cross(z, x), e = camera->eye;
+    float f = 1.0f / tanf(0.5f * camera->fov_y_deg * PI / 180.0f), k = far / (far - near);
+    out[0] = (ris_vec4){x.x * f / aspect, x.y * f / aspect, x.z * f / aspect, -dot(x, e) * f / aspect};
+    out[1] = (ris_vec4){-y.x * f, -y.y * f, -y.z * f, dot(y, e) * f};
+    out[2] = (ris_vec4){-z.x * k, -z.y * k, -z.z * k, dot(z, e) * k - near * k};
+    out[3] = (ris_vec4){-z.x, -z.y, -z.z, dot(z, e)};
+}
+
+/* Rows of world -> clip of a parallel light towards l that sees the sphere (centre, radius). */
+static void light_rows(ris_vec3 l, ris_vec3 centre, float radius, ris_vec4 out[4])
+{
+    ris_vec3 x = unit(cross((ris_vec3){0.0f, 1.0f, 0.0f}, l), (ris_vec3){1.0f, 0.0f, 0.0f}), y = cross(l, x);
+    float s = 1.0f / radius;
+    out[0] = (ris_vec4){x.x * s, x.y * s, x.z * s, -dot(x, centre) * s};
+    out[1] = (ris_vec4){-y.x * s, -y.y * s, -y.z * s, dot(y, centre) * s};
+    out[2] = (ris_vec4){-0.5f * l.x * s, -0.5f * l.y * s, -0.5f * l.z * s, 0.5f * dot(l, centre) * s + 0.5f};
+    out[3] = (ris_vec4){0.0f, 0.0f, 0.0f, 1.0f};
+}
+
+static ris_vec4 lamp(float x, float y, float z, float half_angle)
+{
+    ris_vec3 d = unit((ris_vec3){x, y, z}, (ris_vec3){0.0f, 0.0f, 1.0f});
+    return (ris_vec4){d.x, d.y, d.z, half_angle};
+}
+
+void ris__draw_view_fill(const ris_draw *draw, const ris_camera *camera, const float head[12], ris_draw_view *out)
+{
+    const ris_draw_scene *scene = &draw->scene;
+    ris_vec3 c = {0.5f * (scene->low.x + scene->high.x), 0.5f * (scene->low.y + scene->high.y),
+                  0.5f * (scene->low.z + scene->high.z)};
+    ris_vec3 centre = {head[0] * c.x + head[1] * c.y + head[2] * c.z + head[3],
+                       head[4] * c.x + head[5] * c.y + head[6] * c.z + head[7],
+                       head[8] * c.x + head[9] * c.y + head[10] * c.z + head[11]};
+    ris_vec3 span = minus(scene->high, scene->low);
+    float radius = fmaxf(0.5f * sqrtf(dot(span, span)) * 1.05f, 1.0f);
+    ris_vec3 to_eye = minus(camera->eye, centre);
+    float distance = sqrtf(dot(to_eye, to_eye));
+    float near = fmaxf(distance - 1.2f * radius, 0.02f * radius), far = distance + 1.5f * radius;
+    *out = (ris_draw_view){.eye = {camera->eye.x, camera->eye.y, camera->eye.z,
+                                   tanf(0.5f * camera->fov_y_deg * PI / 180.0f)}};
+    camera_rows(camera, (float)draw->target.width / (float)draw->target.height, near, far, out->clip);
+    /* key from the upper right of the picture, fill low from the left, rim from behind */
+    out->light[0] = lamp(0.62f, 0.62f, 0.85f, 0.26f);
+    out->light[1] = lamp(-0.85f, 0.10f, 0.75f, 0.34f);
+    out->light[2] = lamp(-0.75f, 0.45f, -0.70f, 0.30f);
+    out->radiance[0] = (ris_vec4){1.46f, 1.36f, 1.24f, 0.0f};
+    out->radiance[1] = (ris_vec4){0.36f, 0.40f, 0.46f, 0.0f};
+    out->radiance[2] = (ris_vec4){0.85f, 0.90f, 1.00f, 0.0f};
+    out->sky = (ris_vec4){0.40f, 0.42f, 0.45f, 0.0f};
+    out->ground = (ris_vec4){0.17f, 0.15f, 0.14f, 0.0f};
+    light_rows((ris_vec3){out->light[0].x, out->light[0].y, out->light[0].z}, centre, radius, out->shadow);
+    out->mouth = scene->mouth;
+    out->size = (ris_vec4){(float)draw->target.width, (float)draw->target.height, (float)RIS_DRAW_SHADOW_SIDE,
+                           2.0f * radius / (float)RIS_DRAW_SHADOW_SIDE};
+}

@@ -1,0 +1,229 @@
+/* Parts riding on bones and skin (KA-06). */
+#include "sim/ride.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define FAR_MM 1.5f /* vertices farther from the skin than this look for a nearer vertex of their card */
+
+static ris_vec3 sub(ris_vec3 a, ris_vec3 b)
+{
+    return (ris_vec3){a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+static float dot(ris_vec3 a, ris_vec3 b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+static ris_vec3 cross(ris_vec3 a, ris_vec3 b)
+{
+    return (ris_vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+static ris_vec3 blend(ris_vec3 a, ris_vec3 b, ris_vec3 c, const float w[3])
+{
+    return (ris_vec3){a.x * w[0] + b.x * w[1] + c.x * w[2], a.y * w[0] + b.y * w[1] + c.y * w[2],
+                      a.z * w[0] + b.z * w[1] + c.z * w[2]};
+}
+
+static ris_vec3 xyz(ris_vec4 v)
+{
+    return (ris_vec3){v.x, v.y, v.z};
+}
+
+/* The seven Voronoi regions of a triangle (Ericson, Real-Time Collision Detection, 5.1.5). */
+static void nearest_shares(ris_vec3 p, ris_vec3 a, ris_vec3 b, ris_vec3 c, float s[3])
+{
+    ris_vec3 ab = sub(b, a), ac = sub(c, a), ap = sub(p, a), bp = sub(p, b), cp = sub(p, c);
+    float d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp), d6 = dot(ac, cp);
+    s[0] = s[1] = s[2] = 0.0f;
+    if (d1 <= 0.0f && d2 <= 0.0f) {
+        s[0] = 1.0f;
+        return;
+    }
+    if (d3 >= 0.0f && d4 <= d3) {
+        s[1] = 1.0f;
+        return;
+    }
+    float vc = d1 * d4 - d3 * d2;
+    if (vc <= 0.0f && d1 >= 0.0f && d3 <= 0.0f) {
+        s[1] = d1 / (d1 - d3);
+        s[0] = 1.0f - s[1];
+        return;
+    }
+    if (d6 >= 0.0f && d5 <= d6) {
+        s[2] = 1.0f;
+        return;
+    }
+    float vb = d5 * d2 - d1 * d6;
+    if (vb <= 0.0f && d2 >= 0.0f && d6 <= 0.0f) {
+        s[2] = d2 / (d2 - d6);
+        s[0] = 1.0f - s[2];
+        return;
+    }
+    float va = d3 * d6 - d5 * d4;
+    if (va <= 0.0f && d4 - d3 >= 0.0f && d5 - d6 >= 0.0f) {
+        s[2] = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+        s[1] = 1.0f - s[2];
+        return;
+    }
+    float sum = va + vb + vc;
+    s[1] = vb / sum;
+    s[2] = vc / sum;
+    s[0] = 1.0f - s[1] - s[2];
+}
+
+float ris__ride_nearest(ris_vec3 p, ris_vec3 a, ris_vec3 b, ris_vec3 c, float share[3])
+{
+    nearest_shares(p, a, b, c, share);
+    ris_vec3 away = sub(p, blend(a, b, c, share));
+    return dot(away, away);
+}
+
+bool ris__ride_frame(ris_vec3 a, ris_vec3 b, ris_vec3 c, ris_vec3 frame[3])
+{
+    ris_vec3 x = sub(b, a), z = cross(x, sub(c, a));
+    float lx = sqrtf(dot(x, x)), lz = sqrtf(dot(z, z));
+    if (!(lx > 0.0f) || !(lz > 0.0f)) {
+        return false;
+    }
+    frame[0] = (ris_vec3){x.x / lx, x.y / lx, x.z / lx};
+    frame[2] = (ris_vec3){z.x / lz, z.y / lz, z.z / lz};
+    frame[1] = cross(frame[2], frame[0]);
+    return true;
+}
+
+ris_vec3 ris__ride_offset(ris_vec3 p, ris_vec3 a, ris_vec3 b, ris_vec3 c, const float share[3])
+{
+    ris_vec3 frame[3], away = sub(p, blend(a, b, c, share));
+    if (!ris__ride_frame(a, b, c, frame)) {
+        return (ris_vec3){0};
+    }
+    return (ris_vec3){dot(away, frame[0]), dot(away, frame[1]), dot(away, frame[2])};
+}
+
+ris_vec3 ris__ride_place(const ris_ride *ride, const ris_vec4 *position)
+{
+    ris_vec3 a = xyz(position[ride->vertex[0]]), b = xyz(position[ride->vertex[1]]), c = xyz(position[ride->vertex[2]]);
+    ris_vec3 frame[3], at = blend(a, b, c, ride->share);
+    if (ris__ride_frame(a, b, c, frame)) {
+        const float along[3] = {ride->offset.x, ride->offset.y, ride->offset.z};
+        ris_vec3 away = blend(frame[0], frame[1], frame[2], along);
+        at = (ris_vec3){at.x + away.x, at.y + away.y, at.z + away.z};
+    }
+    return at;
+}
+
+/* Nearest skin triangle of every mesh vertex, by trying all triangles whose box is near enough. */
+static void find_nearest(const ris_model *model, const ris_mesh *mesh, uint32_t *triangle, float *distance2)
+{
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        ris_vec3 p = mesh->position[v];
+        distance2[v] = FLT_MAX;
+        triangle[v] = 0;
+        for (uint32_t t = 0; t < model->triangle_count; t++) {
+            const uint32_t *n = model->triangle + 3 * (size_t)t;
+            ris_vec3 a = xyz(model->rest_position[n[0]]), b = xyz(model->rest_position[n[1]]);
+            ris_vec3 c = xyz(model->rest_position[n[2]]);
+            /* cheap bound: the box of the triangle is farther than the best so far */
+            float dx = fmaxf(fmaxf(fminf(fminf(a.x, b.x), c.x) - p.x, p.x - fmaxf(fmaxf(a.x, b.x), c.x)), 0.0f);
+            float dy = fmaxf(fmaxf(fminf(fminf(a.y, b.y), c.y) - p.y, p.y - fmaxf(fmaxf(a.y, b.y), c.y)), 0.0f);
+            float dz = fmaxf(fmaxf(fminf(fminf(a.z, b.z), c.z) - p.z, p.z - fmaxf(fmaxf(a.z, b.z), c.z)), 0.0f);
+            if (dx * dx + dy * dy + dz * dz >= distance2[v]) {
+                continue;
+            }
+            float share[3], d2 = ris__ride_nearest(p, a, b, c, share);
+            if (d2 < distance2[v]) {
+                distance2[v] = d2;
+                triangle[v] = t;
+            }
+        }
+    }
+}
+
+/* Lets vertices far from the skin take the triangle of the nearest-to-skin neighbour, until nothing changes. */
+static void spread_roots(const ris_mesh *mesh, uint32_t *triangle, float *distance2)
+{
+    bool changed = true;
+    for (int pass = 0; pass < 64 && changed; pass++) {
+        changed = false;
+        for (uint32_t f = 0; f < mesh->face_count; f++) {
+            uint32_t first = mesh->face_start[f], end = mesh->face_start[f + 1];
+            for (uint32_t c = first; c < end; c++) {
+                uint32_t a = mesh->face_vertex[c], b = mesh->face_vertex[c + 1 < end ? c + 1 : first];
+                uint32_t near = distance2[a] < distance2[b] ? a : b, far = near == a ? b : a;
+                if (distance2[far] > FAR_MM * FAR_MM && distance2[near] < distance2[far]) {
+                    triangle[far] = triangle[near];
+                    distance2[far] = distance2[near];
+                    changed = true;
+                }
+            }
+        }
+    }
+}
+
+ris_result ris__ride_bind(const ris_model *model, const ris_mesh *mesh, ris_ride *out, uint32_t *out_triangle,
+                          ris_error *err)
+{
+    size_t count = mesh->vertex_count > 0 ? mesh->vertex_count : 1;
+    uint32_t *triangle = malloc(count * sizeof *triangle);
+    float *distance2 = malloc(count * sizeof *distance2);
+    if (triangle == NULL || distance2 == NULL) {
+        free(triangle);
+        free(distance2);
+        return ris_fail(err, RIS_ERROR_MEMORY, "out of memory for a skin-bound part of %u vertices",
+                        (unsigned)mesh->vertex_count);
+    }
+    find_nearest(model, mesh, triangle, distance2);
+    spread_roots(mesh, triangle, distance2);
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        const uint32_t *n = model->triangle + 3 * (size_t)triangle[v];
+        ris_vec3 a = xyz(model->rest_position[n[0]]), b = xyz(model->rest_position[n[1]]);
+        ris_vec3 c = xyz(model->rest_position[n[2]]), p = mesh->position[v];
+        ris_ride *ride = &out[v];
+        memcpy(ride->vertex, n, sizeof ride->vertex);
+        (void)ris__ride_nearest(p, a, b, c, ride->share);
+        ride->offset = ris__ride_offset(p, a, b, c, ride->share);
+        if (out_triangle != NULL) {
+            out_triangle[v] = triangle[v];
+        }
+    }
+    free(triangle);
+    free(distance2);
+    return RIS_OK;
+}
+
+ris_result ris_sim_part(const ris_sim *sim, uint32_t part, const ris_vec4 *position, ris_vec4 *out, ris_error *err)
+{
+    const ris_model *model = ris_sim_get_model(sim);
+    if (part >= model->head->part_count) {
+        return ris_fail(err, RIS_ERROR_USAGE, "the head has %u parts, there is no part %u",
+                        (unsigned)model->head->part_count, (unsigned)part);
+    }
+    const ris_part_def *def = &model->head->part[part];
+    const ris_mesh *mesh = &def->mesh;
+    if (def->bone == RIS_BONE_SKIN) {
+        ris_ride *ride = malloc((mesh->vertex_count + 1) * sizeof *ride);
+        if (ride == NULL) {
+            return ris_fail(err, RIS_ERROR_MEMORY, "out of memory for part \"%s\"", def->name);
+        }
+        ris_result result = ris__ride_bind(model, mesh, ride, NULL, err);
+        for (uint32_t v = 0; v < mesh->vertex_count && result == RIS_OK; v++) {
+            ris_vec3 p = ris__ride_place(&ride[v], position);
+            out[v] = (ris_vec4){p.x, p.y, p.z, 1.0f};
+        }
+        free(ride);
+        return result;
+    }
+    float m[12];
+    ris_sim_bone_transform(sim, def->bone, m);
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        ris_vec3 p = mesh->position[v];
+        out[v] = (ris_vec4){m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3], m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
+                            m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11], 1.0f};
+    }
+    return RIS_OK;
+}

@@ -1,0 +1,27 @@
+/* How parts move with the head (KA-06): rigid parts by their bone, skin-bound parts (lashes, brows) by the skin triangle
+ * below them. Shared by `export --parts` (evaluated here) and by the raster pass (evaluated in shaders/draw/ride.comp). */
+#pragma once
+
+#include "risorius/sim.h"
+
+/* A vertex on a triangle. Frame of the triangle: x along its first edge, z its normal, y across; the origin is the
+ * barycentric point. A card's far vertices share the triangle of the card's vertex nearest to the skin, so that a lash
+ * keeps its shape. */
+typedef struct ris_ride {
+    uint32_t vertex[3];
+    float share[3];  /* barycentric, sums to 1 */
+    ris_vec3 offset; /* mm in the frame */
+} ris_ride;
+
+/* Binds the vertices of mesh to the skin of model at rest: out and out_triangle (mesh->vertex_count); out_triangle is the
+ * index into model->triangle. out_triangle may be NULL. RIS_ERROR_MEMORY. */
+ris_result ris__ride_bind(const ris_model *model, const ris_mesh *mesh, ris_ride *out, uint32_t *out_triangle,
+                          ris_error *err);
+/* Point of triangle (a, b, c) nearest to p as barycentric shares; returns the squared distance, mm^2. */
+float ris__ride_nearest(ris_vec3 p, ris_vec3 a, ris_vec3 b, ris_vec3 c, float share[3]);
+/* Rows x, y, z of the frame of triangle (a, b, c); false if it has no area. */
+bool ris__ride_frame(ris_vec3 a, ris_vec3 b, ris_vec3 c, ris_vec3 frame[3]);
+/* Offset of p from the barycentric point in the frame of the triangle. */
+ris_vec3 ris__ride_offset(ris_vec3 p, ris_vec3 a, ris_vec3 b, ris_vec3 c, const float share[3]);
+/* Where a ridden vertex is for these vertex positions. */
+ris_vec3 ris__ride_place(const ris_ride *ride, const ris_vec4 *position);

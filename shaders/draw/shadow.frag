@@ -1,0 +1,6 @@
+// Depth only.
+#version 460
+
+void main()
+{
+}

@@ -1,0 +1,7 @@
+#version 460
+layout(location = 0) out vec4 out_color;
+
+void main()
+{
+    out_color = vec4(0.02, 0.10, 0.16, 1.0);
+}
