@@ -30,11 +30,6 @@ ris_compare_def ris_default_compare_def(ris_sim *a, ris_sim *b)
                               .clip_tolerance_mm = exact ? 0.0f : 1e-2f, .moved_minimum = 500 };
 }
 
-static uint32_t substeps_of(const ris_model *model)
-{
-    return (uint32_t)lround(RIS_TICK_S / (double)model->push.dt_s);
-}
-
 /* States that a stage writes; the first is the one measured in mm. Returns how many. */
 static uint32_t outputs(ris_stage stage, ris_state out[3])
 {
@@ -373,7 +368,7 @@ ris_result ris_compare_run(const ris_compare_def *def, ris_compare_report *out, 
     }
     result = init_run(&r, def, out, err);
     out->tick_count = def->tick_count;
-    out->substeps = substeps_of(r.model);
+    out->substeps = r.model->head->tissue.substeps;
     out->node_count = r.model->node_count;
     out->moving_count = r.model->moving_count;
     if (result == RIS_OK) {
