@@ -11,6 +11,9 @@ ris_result ris_fail(ris_error *err, ris_result code, const char *format, ...)
         err->code = code;
         vsnprintf(err->text, sizeof err->text, format, args);
         va_end(args);
+        for (char *c = err->text; *c; c++) {
+            *c = (unsigned char)*c < 32 ? ' ' : *c; /* names from files may hold anything; a sentence is one line */
+        }
     }
     return code;
 }
