@@ -11,6 +11,7 @@
 #define BLEND_RATIO 1.6f  /* segments up to BLEND_RATIO x nearest + BLEND_MM take part */
 #define BLEND_MM 2.0f
 #define FACING_FULL 0.2f  /* n_s . n_d from which on the facing rule does not weaken a binding */
+#define ABOVE_FULL 0.6f   /* from -0.5 to 0.5 of this n_s . up a binding goes from none to full */
 
 enum { LIP_UPPER = 1, LIP_LOWER = 2 };
 
@@ -20,6 +21,7 @@ typedef struct touch {
     ris_vec3 local; /* y = +-0.5: the muscle surface on the node's side */
     float distance; /* to the sheet, mm */
     float facing;   /* n_s . n_d */
+    float above;    /* n_s . up of the segment */
     float along;    /* arc-length parameter along the fibre */
     float share;
 } touch;
@@ -48,6 +50,7 @@ static touch meet_segment(const binder *b, uint32_t fiber, uint32_t row, uint32_
     const ris_vec3 d = v3_sub(x, on_sheet);
     t.distance = v3_length(d);
     t.facing = v3_dot(v3_unit_or(d, segment->up), v4_xyz(model->rest_normal[node]));
+    t.above = v3_dot(segment->up, v4_xyz(model->rest_normal[node]));
     t.along = b->arc[point] + (t.local.x + 0.5f) * (b->arc[point + 1] - b->arc[point]);
     return t;
 }
@@ -143,7 +146,7 @@ static ris_result bind_blended(binder *b, uint32_t m, uint32_t node, ris_error *
         return RIS_OK;
     }
     const float limit = BLEND_RATIO * list[0].distance + BLEND_MM;
-    float sum = 0.0f, along = 0.0f, facing = 0.0f;
+    float sum = 0.0f, along = 0.0f, facing = 0.0f, above = 0.0f;
     uint32_t kept = 0;
     for (uint32_t k = 0; k < count; ++k) {
         float s = f_max(1.0f - list[k].distance / limit, 0.0f) / f_max(list[k].distance, 0.01f);
@@ -155,11 +158,14 @@ static ris_result bind_blended(binder *b, uint32_t m, uint32_t node, ris_error *
         list[k].share /= sum;
         along += list[k].share * list[k].along;
         facing += list[k].share * list[k].facing;
+        above += list[k].share * list[k].above;
     }
     const float ratio = beyond / muscle->radius_mm, bell = 1.0f - ratio * ratio;
     float weight = bell * bell * f_clamp(facing / FACING_FULL, 0.0f, 1.0f);
     if (muscle->kind == RIS_MUSCLE_LINEAR) {
         float start = muscle->insertion_start;
+        /* a muscle of the face does not move the lining of the mouth behind it */
+        weight *= f_clamp(0.5f + above / ABOVE_FULL, 0.0f, 1.0f);
         weight *= f_smoothstep(muscle->gain * (along - start) / f_max(1.0f - start, 1e-3f));
     }
     if (!(weight > 1e-4f)) {

@@ -1,6 +1,7 @@
-/* muscle_constrain: KA-33 geometric resolution of the constraint groups. In the default tissue the members follow along their
- * whole length (in proportion to the arc length from the fixed end), and the displacement of a corner of the mouth becomes a drag
- * along the orbicularis oris (spec/prototype.md 5: group displacement x t^p) in place of the straightening of KA-35. */
+/* muscle_constrain: KA-33 geometric resolution of the constraint groups, literal in the kaehler tissue. In the default tissue the
+ * groups are the corners of the mouth: the corner's displacement is the weighted mean of its members', which follow it along their
+ * whole length, and it drags the lips along the orbicularis oris (group displacement x t^p) in place of the straightening of KA-35,
+ * which pulls lips flat. */
 #include "sim/rig.h"
 
 #include "model/model_impl.h"
@@ -44,17 +45,24 @@ float ris__power(float t, float power)
     return result + (power - (float)whole) * (result * t - result);
 }
 
-/* Literal: the constrained point alone. Default: the whole muscle in proportion to its length from the fixed end. */
-static void displace_member(ris_rig *rig, const ris_group_point *member, ris_vec3 delta, bool literal)
+/* Moves a point of a muscle in all its fibres. */
+static void displace_point(ris_rig *rig, const ris_group_point *member, ris_vec3 delta)
 {
     const ris_model *model = rig->model;
     const ris_muscle *muscle = &model->muscle[member->muscle];
     for (uint32_t f = 0; f < muscle->fiber_count; ++f) {
+        ris_vec3 *q = &rig->q[model->fiber[muscle->first_fiber + f].first_point + member->point];
+        *q = v3_add(*q, delta);
+    }
+}
+
+/* Moves a whole muscle in proportion to the arc length from its fixed end. */
+static void displace_muscle(ris_rig *rig, uint32_t m, ris_vec3 delta)
+{
+    const ris_model *model = rig->model;
+    const ris_muscle *muscle = &model->muscle[m];
+    for (uint32_t f = 0; f < muscle->fiber_count; ++f) {
         const uint32_t first = model->fiber[muscle->first_fiber + f].first_point;
-        if (literal) {
-            rig->q[first + member->point] = v3_add(rig->q[first + member->point], delta);
-            continue;
-        }
         float total = 0.0f, length = 0.0f;
         for (uint32_t i = 1; i < muscle->point_count; ++i) {
             total += v3_distance(rig->p[first + i], rig->p[first + i - 1]);
@@ -66,41 +74,65 @@ static void displace_member(ris_rig *rig, const ris_group_point *member, ris_vec
     }
 }
 
-static void resolve(ris_rig *rig, const ris_group *group, bool literal)
+/* kaehler tissue: KA-33 as it stands. */
+static void resolve_literal(ris_rig *rig, const ris_group *group)
 {
     const ris_model *model = rig->model;
     const ris_group_point *member = model->group_point + group->first_point;
-    const uint32_t n = group->point_count;
     float contraction[RIS_GROUP_MAX], distance[RIS_GROUP_MAX];
     ris_vec3 rest[RIS_GROUP_MAX], before[RIS_GROUP_MAX], after[RIS_GROUP_MAX];
-    float acting = 0.0f, pulling = 0.0f, power = 0.0f;
-    for (uint32_t k = 0; k < n; ++k) {
+    bool acting = !rig->jaw.identity;
+    for (uint32_t k = 0; k < group->point_count; ++k) {
         const ris_muscle *muscle = &model->muscle[member[k].muscle];
         contraction[k] = rig->contraction[member[k].muscle];
+        acting = acting || contraction[k] > 0.0f;
         distance[k] = member[k].rest_distance_mm;
         rest[k] = ris__muscle_point(model, muscle, model->fiber_point, member[k].point);
         before[k] = after[k] = ris__muscle_point(model, muscle, rig->q, member[k].point);
-        acting += rig->activation[member[k].muscle];
-        if (muscle->lip_drag_power > 0.0f) {
-            pulling += rig->activation[member[k].muscle];
-            power += rig->activation[member[k].muscle] * muscle->lip_drag_power;
-        }
     }
-    if (!(acting > 0.0f) && (!literal || rig->jaw.identity)) {
+    if (!acting) {
         return; /* nothing has moved: leave the bits alone */
     }
-    ris__resolve_group(n, contraction, distance, rest, model->head->tissue.constraint_lambda, after);
-    for (uint32_t k = 0; k < n; ++k) {
+    ris__resolve_group(group->point_count, contraction, distance, rest, model->head->tissue.constraint_lambda, after);
+    for (uint32_t k = 0; k < group->point_count; ++k) {
+        displace_point(rig, &member[k], v3_sub(after[k], before[k]));
+    }
+}
+
+/* Default tissue: the corner moves by the mean displacement of its members, weighted with 1 + lambda x activation (activation,
+ * not contraction, because contractions end at max_shortening, far below 1). */
+static void resolve_corner(ris_rig *rig, const ris_group *group)
+{
+    const ris_model *model = rig->model;
+    const ris_group_point *member = model->group_point + group->first_point;
+    const float lambda = model->head->tissue.constraint_lambda;
+    ris_vec3 moved[RIS_GROUP_MAX], sum = {0};
+    float weight = 0.0f, pulling = 0.0f, power = 0.0f;
+    for (uint32_t k = 0; k < group->point_count; ++k) {
         const ris_muscle *muscle = &model->muscle[member[k].muscle];
-        const ris_vec3 delta = v3_sub(after[k], before[k]);
-        if (literal || muscle->kind == RIS_MUSCLE_LINEAR) {
-            displace_member(rig, &member[k], delta, literal);
-        } else if (pulling > 0.0f) {
-            ris_drag *drag = &rig->drag[2 * (size_t)member[k].muscle + (member[k].point > 0)];
-            drag->displacement = delta;
-            drag->power = power / pulling;
-            drag->strength = f_min(pulling / ACTIVITY_FULL, 1.0f);
+        const float activation = rig->activation[member[k].muscle], w = 1.0f + lambda * activation;
+        moved[k] = v3_sub(ris__muscle_point(model, muscle, rig->q, member[k].point),
+                          ris__muscle_point(model, muscle, rig->p, member[k].point));
+        sum = v3_mad(sum, w, moved[k]);
+        weight += w;
+        if (muscle->lip_drag_power > 0.0f) {
+            pulling += activation;
+            power += activation * muscle->lip_drag_power;
         }
+    }
+    if (!(pulling > 0.0f)) {
+        return;
+    }
+    const ris_vec3 corner = v3(sum.x / weight, sum.y / weight, sum.z / weight);
+    for (uint32_t k = 0; k < group->point_count; ++k) {
+        if (model->muscle[member[k].muscle].kind == RIS_MUSCLE_LINEAR) {
+            displace_muscle(rig, member[k].muscle, v3_sub(corner, moved[k]));
+            continue;
+        }
+        ris_drag *drag = &rig->drag[2 * (size_t)member[k].muscle + (member[k].point > 0)];
+        drag->displacement = corner;
+        drag->power = power / pulling;
+        drag->strength = f_min(pulling / ACTIVITY_FULL, 1.0f);
     }
 }
 
@@ -110,6 +142,10 @@ void ris__muscle_constrain(ris_rig *rig)
     const bool literal = (model->push.flags & RIS_TISSUE_FLAG_KAEHLER) != 0;
     memset(rig->drag, 0, 2 * (size_t)model->muscle_count * sizeof *rig->drag);
     for (uint32_t g = 0; g < model->group_count; ++g) {
-        resolve(rig, &model->group[g], literal);
+        if (literal) {
+            resolve_literal(rig, &model->group[g]);
+        } else {
+            resolve_corner(rig, &model->group[g]);
+        }
     }
 }
