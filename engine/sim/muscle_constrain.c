@@ -79,8 +79,8 @@ static void resolve_literal(ris_rig *rig, const ris_group *group)
 {
     const ris_model *model = rig->model;
     const ris_group_point *member = model->group_point + group->first_point;
-    float contraction[RIS_GROUP_MAX], distance[RIS_GROUP_MAX];
-    ris_vec3 rest[RIS_GROUP_MAX], before[RIS_GROUP_MAX], after[RIS_GROUP_MAX];
+    float contraction[RIS_GROUP_MAX] = {0}, distance[RIS_GROUP_MAX] = {0};
+    ris_vec3 rest[RIS_GROUP_MAX] = {{0}}, before[RIS_GROUP_MAX] = {{0}}, after[RIS_GROUP_MAX] = {{0}};
     bool acting = !rig->jaw.identity;
     for (uint32_t k = 0; k < group->point_count; ++k) {
         const ris_muscle *muscle = &model->muscle[member[k].muscle];
@@ -106,7 +106,7 @@ static void resolve_corner(ris_rig *rig, const ris_group *group)
     const ris_model *model = rig->model;
     const ris_group_point *member = model->group_point + group->first_point;
     const float lambda = model->head->tissue.constraint_lambda;
-    ris_vec3 moved[RIS_GROUP_MAX], sum = {0};
+    ris_vec3 moved[RIS_GROUP_MAX] = {{0}}, sum = {0};
     float weight = 0.0f, pulling = 0.0f, power = 0.0f;
     for (uint32_t k = 0; k < group->point_count; ++k) {
         const ris_muscle *muscle = &model->muscle[member[k].muscle];
