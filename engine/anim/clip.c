@@ -1,12 +1,13 @@
-/* KA-50: sampling of clips. A sample depends on the time alone, never on what was sampled before.
- * Cubic: F. N. Fritsch, R. E. Carlson, Monotone piecewise cubic interpolation, SIAM J. Numer. Anal. 17 (1980). */
+/* KA-50: sampling of clips. A sample depends on the time alone, never on what was sampled before. Cubic: F.
+ * N. Fritsch, R. E. Carlson, Monotone piecewise cubic interpolation, SIAM J. Numer. Anal. 17 (1980). */
 #include "anim/clip.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* What the curve does between key i and i + 1, as far as the cubic beside it cares: a held value has slope 0. */
+/* What the curve does between key i and i + 1, as far as the cubic beside it cares: a held value has slope 0.
+ * */
 static double secant(const ris_track *track, uint32_t i)
 {
     const ris_key *a = &track->key[i], *b = a + 1;

@@ -1,5 +1,5 @@
-/* The readers behind ris_head_load, one per file or object; each fills its fields of the head and leaves what it
- * took to ris_head_finish, also on failure. head->skin must be there before the others. */
+/* The readers behind ris_head_load, one per file or object; each fills its fields of the head and leaves what
+ * it took to ris_head_finish, also on failure. head->skin must be there before the others. */
 #pragma once
 
 #include "asset/json.h"
@@ -14,12 +14,14 @@ ris_result ris__parts_read(const ris_json_at *at, ris_head *head, ris_error *err
 /* The expressions of expressions.json; muscles must be there. */
 ris_result ris__head_expressions_read(const ris_json *json, ris_head *head, ris_error *err);
 
-/* depth.csv: "vertex,depth_mm,jaw_weight", one row per vertex in order. name stands for the file in errors. */
+/* depth.csv: "vertex,depth_mm,jaw_weight", one row per vertex in order. name stands for the file in errors.
+ * */
 ris_result ris__depth_read(const char *name, const char *text, size_t size, ris_head *head, ris_error *err);
 /* skin.map: one base vertex or -1 per line, one line per vertex. */
 ris_result ris__map_read(const char *name, const char *text, size_t size, ris_head *head, ris_error *err);
 
-/* Reads a file name, checks that the file can be opened and gives its path (malloc) in *out; absent: *out NULL. */
+/* Reads a file name, checks that the file can be opened and gives its path (malloc) in *out; absent: *out
+ * NULL. */
 ris_result ris__read_file_key(const ris_json_at *at, const char *directory, char **out, ris_error *err);
 
 /* A copy (malloc) of text. */

@@ -1,6 +1,7 @@
-/* JSON with errors that say where: a value is addressed by the path it was reached by, so that every message carries
- * file, line, column and path ("muscles.json:12:8: muscles[3].grid[0][1]: expected 3 numbers, found 2").
- * Jansson reads the text; line and column of a value are found again in the text only when an error needs them. */
+/* JSON with errors that say where: a value is addressed by the path it was reached by, so that every message
+ * carries file, line, column and path ("muscles.json:12:8: muscles[3].grid[0][1]: expected 3 numbers, found
+ * 2"). Jansson reads the text; line and column of a value are found again in the text only when an error
+ * needs them. */
 #pragma once
 
 #include "risorius/base.h"
@@ -14,7 +15,8 @@ typedef struct ris_json {
     json_t *root;
 } ris_json;
 
-/* A value and how it was reached; lives on the stack, parent must outlive it. value is NULL if the key is absent. */
+/* A value and how it was reached; lives on the stack, parent must outlive it. value is NULL if the key is
+ * absent. */
 typedef struct ris_json_at {
     const ris_json *json;
     const struct ris_json_at *parent;

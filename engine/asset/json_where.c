@@ -1,5 +1,5 @@
-/* Finds a value again in its JSON text, for the line and column of an error about it. The text has been accepted by
- * Jansson, so this only has to walk, never to judge; it still never reads past the end. */
+/* Finds a value again in its JSON text, for the line and column of an error about it. The text has been
+ * accepted by Jansson, so this only has to walk, never to judge; it still never reads past the end. */
 #include "asset/json.h"
 
 #include <stdarg.h>

@@ -1,4 +1,5 @@
-/* Strict OBJ reader: v, vt, f with quads and polygons kept; vn, o, g, s, usemtl, mtllib skipped; all else refused. */
+/* Strict OBJ reader: v, vt, f with quads and polygons kept; vn, o, g, s, usemtl, mtllib skipped; all else
+ * refused. */
 #include "base/file.h"
 #include "base/text.h"
 #include "risorius/head.h"
@@ -36,7 +37,8 @@ static ris_result fail_at(const reader *r, const char *at, const char *expected)
                     length ? found : "the end of the line", length ? "\"" : "");
 }
 
-/* array with room for count elements, doubling *capacity; NULL with err set when memory is out (array stays valid). */
+/* array with room for count elements, doubling *capacity; NULL with err set when memory is out (array stays
+ * valid). */
 static void *grown(reader *r, void *array, uint32_t *capacity, uint32_t count, size_t element)
 {
     if (count <= *capacity) {

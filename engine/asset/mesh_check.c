@@ -1,4 +1,5 @@
-/* What a simulation needs of a mesh (models-to-follow 5.4): finite, no zero area, no isolated vertex, manifold, oriented. */
+/* What a simulation needs of a mesh (models-to-follow 5.4): finite, no zero area, no isolated vertex,
+ * manifold, oriented. */
 #include "risorius/head.h"
 
 #include <math.h>
@@ -51,7 +52,8 @@ static bool zero_area(const ris_vec3 *a, const ris_vec3 *b, const ris_vec3 *c)
     return sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) <= ZERO_AREA_SHARE * longest;
 }
 
-/* Triangles and quads: every corner, since a quad may be split either way. Polygons: the fan of their first corner. */
+/* Triangles and quads: every corner, since a quad may be split either way. Polygons: the fan of their first
+ * corner. */
 static ris_result check_areas(const ris_mesh *mesh, const char *name, ris_error *err)
 {
     for (uint32_t face = 0; face < mesh->face_count; face++) {

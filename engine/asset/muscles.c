@@ -1,4 +1,5 @@
-/* muscles.json: KA-38 grids and the muscle file of KA-44; mirrored records are expanded about x = 0 (KA-43). */
+/* muscles.json: KA-38 grids and the muscle file of KA-44; mirrored records are expanded about x = 0 (KA-43).
+ * */
 #include "asset/head_parts.h"
 #include "asset/names.h"
 #include "base/text.h"
@@ -228,8 +229,8 @@ static ris_result read_own(const ris_json_at *at, uint32_t vertex_count, ris_mus
     return RIS_OK;
 }
 
-/* Copies source mirrored about x = 0: rows stay (row 0 is the fixed end), columns turn round, so that the grid's
- * normals still point the same way in or out. */
+/* Copies source mirrored about x = 0: rows stay (row 0 is the fixed end), columns turn round, so that the
+ * grid's normals still point the same way in or out. */
 static ris_result copy_mirrored(const ris_muscle_def *source, const char *file, ris_muscle_def *def,
                                 ris_error *err)
 {

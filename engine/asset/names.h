@@ -1,4 +1,5 @@
-/* How names look (design, section 4 "Names") and how a name finds its channels; used by head and clip readers. */
+/* How names look (design, section 4 "Names") and how a name finds its channels; used by head and clip
+ * readers. */
 #pragma once
 
 #include "asset/json.h"
@@ -14,7 +15,8 @@ bool ris__name_is_opposite(const char *a, const char *b);
 /* True if sided is name followed by ".L" or ".R". */
 bool ris__name_is_side_of(const char *sided, const char *name);
 
-/* Reads a name of at most RIS_NAME_SIZE - 1 bytes that is anatomical; what is for the message ("a muscle name"). */
+/* Reads a name of at most RIS_NAME_SIZE - 1 bytes that is anatomical; what is for the message ("a muscle
+ * name"). */
 ris_result ris__read_name(const ris_json_at *at, const char *what, char out[RIS_NAME_SIZE], ris_error *err);
 
 /* Channel names as a list, and expressions that are in reach beside those being read. */
@@ -28,8 +30,8 @@ typedef struct ris_scope {
 /* True if name is a channel, or the unsided name of one or two. */
 bool ris__scope_has_channel(const ris_scope *scope, const char *name);
 
-/* Reads {name: {channel: value}} into *out (malloc, also on failure: ris__expressions_finish). Refuses names of
- * another kind, unknown terms (three nearest) and terms that are expressions made of expressions. */
+/* Reads {name: {channel: value}} into *out (malloc, also on failure: ris__expressions_finish). Refuses names
+ * of another kind, unknown terms (three nearest) and terms that are expressions made of expressions. */
 ris_result ris__expressions_read(const ris_json_at *at, const ris_scope *scope, ris_expression **out,
                                  uint32_t *out_count, ris_error *err);
 void ris__expressions_finish(ris_expression *expression, uint32_t count);

@@ -15,7 +15,8 @@ typedef struct lines {
     ris_error *err;
 } lines;
 
-/* Steps to the next line; false at the end of the text. A last line without newline counts, an empty one does not. */
+/* Steps to the next line; false at the end of the text. A last line without newline counts, an empty one does
+ * not. */
 static bool next_line(lines *l)
 {
     if (l->next >= l->end) {

@@ -1,4 +1,5 @@
-/* Whole-file input, and output that appears under its name only when it is complete (design: nothing half-written). */
+/* Whole-file input, and output that appears under its name only when it is complete (design: nothing
+ * half-written). */
 #pragma once
 
 #include "risorius/base.h"
@@ -12,11 +13,13 @@
 #define RIS_MAX_JSON_BYTES ((size_t)64 << 20)
 #define RIS_MAX_IMAGE_BYTES ((size_t)256 << 20)
 
-/* Reads a whole file into *out (malloc, caller frees), with a NUL after the last byte; out_size does not count it.
- * Errors: RIS_ERROR_DATA (missing, unreadable, a directory, longer than max_size), RIS_ERROR_MEMORY. */
+/* Reads a whole file into *out (malloc, caller frees), with a NUL after the last byte; out_size does not
+ * count it. Errors: RIS_ERROR_DATA (missing, unreadable, a directory, longer than max_size),
+ * RIS_ERROR_MEMORY. */
 ris_result ris__file_read(const char *path, size_t max_size, char **out, size_t *out_size, ris_error *err);
 
-/* "directory/name", or name alone when it is absolute or directory is empty. Error: RIS_ERROR_DATA when too long. */
+/* "directory/name", or name alone when it is absolute or directory is empty. Error: RIS_ERROR_DATA when too
+ * long. */
 ris_result ris__path_join(char out[RIS_PATH_SIZE], const char *directory, const char *name, ris_error *err);
 
 /* A file being written. Zero it, open, write, then commit; discard is safe at any point, also after commit.
@@ -28,8 +31,8 @@ typedef struct ris_output_file {
     char temporary[RIS_PATH_SIZE]; /* empty when the path is written directly */
 } ris_output_file;
 
-/* Errors of all: RIS_ERROR_FAILED with path and reason. The library never touches signals: a program that wants
- * an error instead of a signal at a file-size limit ignores SIGXFSZ (and SIGPIPE for pipes). */
+/* Errors of all: RIS_ERROR_FAILED with path and reason. The library never touches signals: a program that
+ * wants an error instead of a signal at a file-size limit ignores SIGXFSZ (and SIGPIPE for pipes). */
 ris_result ris__output_open(ris_output_file *file, const char *path, ris_error *err);
 ris_result ris__output_write(ris_output_file *file, const void *data, size_t size, ris_error *err);
 ris_result ris__output_printf(ris_output_file *file, ris_error *err, const char *format, ...)

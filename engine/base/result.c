@@ -12,7 +12,7 @@ ris_result ris_fail(ris_error *err, ris_result code, const char *format, ...)
         vsnprintf(err->text, sizeof err->text, format, args);
         va_end(args);
         for (char *c = err->text; *c; c++) {
-            *c = (unsigned char)*c < 32 ? ' ' : *c; /* names from files may hold anything; a sentence is one line */
+            *c = (unsigned char)*c < 32 ? ' ' : *c; /* whatever a file holds, a sentence is one line */
         }
     }
     return code;

@@ -3,8 +3,9 @@
 
 #include "risorius/base.h"
 
-/* Reads one decimal number ("-1.5", "3", ".5", "2e-3") from [text, end), whatever the locale; "nan", "inf", hex and
- * blanks are not numbers. Returns the first byte after it, or NULL if there is none or it is beyond double's range. */
+/* Reads one decimal number ("-1.5", "3", ".5", "2e-3") from [text, end), whatever the locale; "nan", "inf",
+ * hex and blanks are not numbers. Returns the first byte after it, or NULL if there is none or it is beyond
+ * double's range. */
 const char *ris__parse_number(const char *text, const char *end, double *out);
 /* Reads an optionally signed decimal integer from [text, end); NULL if there is none or |value| > 2^53. */
 const char *ris__parse_integer(const char *text, const char *end, int64_t *out);

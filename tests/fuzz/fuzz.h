@@ -1,4 +1,5 @@
-/* What every fuzz driver promises: any bytes either give a sound object or one sentence, never both, never a crash. */
+/* What every fuzz driver promises: any bytes either give a sound object or one sentence, never both, never a
+ * crash. */
 #pragma once
 
 #include "risorius/base.h"

@@ -1,5 +1,5 @@
-/* The readers behind head.json. The first byte picks one: r regions, m muscles, t tissue, j jaw, e expressions,
- * d depth.csv, k skin.map. The skin is a fan of 8 vertices. */
+/* The readers behind head.json. The first byte picks one: r regions, m muscles, t tissue, j jaw, e
+ * expressions, d depth.csv, k skin.map. The skin is a fan of 8 vertices. */
 #include "fuzz.h"
 
 #include "asset/head_parts.h"

@@ -1,4 +1,5 @@
-/* A model of channels only, for poses and clips: two sided muscles, one unsided, jaw and eyes, three expressions. */
+/* A model of channels only, for poses and clips: two sided muscles, one unsided, jaw and eyes, three
+ * expressions. */
 #pragma once
 
 #include "risorius/model.h"

@@ -1,4 +1,5 @@
-/* A folder of temporary files for one test program, below the build directory, and assertions on error texts. */
+/* A folder of temporary files for one test program, below the build directory, and assertions on error texts.
+ * */
 #pragma once
 
 #include <setjmp.h>

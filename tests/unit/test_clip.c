@@ -1,5 +1,6 @@
-/* KA-50: clips are sampled by time; linear mid-way is the mean of the keys, the spline passes through them, any order
- * of times gives the same values; empty and wrong clips are refused with file, line, column and path. */
+/* KA-50: clips are sampled by time; linear mid-way is the mean of the keys, the spline passes through them,
+ * any order of times gives the same values; empty and wrong clips are refused with file, line, column and
+ * path. */
 #include "scratch.h"
 
 #include "anim/clip.h"
@@ -95,13 +96,16 @@ static void test_cubic_of_two_keys(void **state)
     ris_clip_destroy(clip);
 }
 
-/* Equal secants: the slope of the inner key is theirs; the cubic has no kink there, a linear track with other slopes has. */
+/* Equal secants: the slope of the inner key is theirs; the cubic has no kink there, a linear track with other
+ * slopes has. */
 static void test_cubic_is_smooth(void **state)
 {
     (void)state;
-    ris_clip *clip = clip_of(CLIP(TRACK("eye.yaw.L", "{\"t\":0,\"v\":0,\"ease\":\"cubic\"},{\"t\":1,\"v\":8,"
-                                                     "\"ease\":\"cubic\"},{\"t\":3,\"v\":20}") "," TRACK(
-        "eye.yaw.R", "{\"t\":0,\"v\":0},{\"t\":1,\"v\":8},{\"t\":3,\"v\":20}")));
+    ris_clip *clip = clip_of(CLIP(TRACK(
+        "eye.yaw.L",
+        "{\"t\":0,\"v\":0,\"ease\":\"cubic\"},{\"t\":1,\"v\":8,"
+        "\"ease\":\"cubic\"},{\"t\":3,\"v\":20}") "," TRACK("eye.yaw.R", "{\"t\":0,\"v\":0},{\"t\":1,\"v\":8}"
+                                                                         ",{\"t\":3,\"v\":20}")));
     double h = 1e-2;
     double left = (8 - (double)sample(clip, 1 - h, FAKE_YAW_L)) / h,
            right = ((double)sample(clip, 1 + h, FAKE_YAW_L) - 8) / h;
@@ -172,7 +176,8 @@ static void test_labels(void **state)
     expect_label(clip, 1, 4, "back");
     assert_null(ris_clip_label(clip, 2, NULL));
     ris_clip_destroy(clip);
-    /* without labels: key times at which the pose is another than the one before, named after what acts most */
+    /* without labels: key times at which the pose is another than the one before, named after what acts most
+     * */
     clip = clip_of(CLIP(
         TRACK("smile", "{\"t\":0,\"v\":0},{\"t\":1,\"v\":1},{\"t\":2,\"v\":1},{\"t\":3,\"v\":0}") "," TRACK(
             "eye.yaw", "{\"t\":2,\"v\":0},{\"t\":3,\"v\":35}")));

@@ -175,7 +175,8 @@ static void test_tissue(void **state)
     assert_int_equal(head.tissue.model, RIS_TISSUE_RISORIUS);
     assert_true(head.tissue.continuous && head.tissue.stiffness_scale == 2 && head.tissue.substeps == 8);
     assert_int_equal(head.tissue.anchor_region_count, 3);
-    assert_string_equal(head.tissue.anchor_region[2].region, "lips");
+    assert_string_equal(head.tissue.anchor_region[1].region, "lips");
+    assert_string_equal(head.tissue.anchor_region[2].region, "muscle");
     ris_head_finish(&head);
     scratch_write("head.json",
                   HEAD_START JAW ",\"tissue\":{\"model\":\"kaehler\",\"law\":\"jump\",\"modulus\":[50,500],"
