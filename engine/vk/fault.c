@@ -68,6 +68,7 @@ static int call_length(const char *call)
 ris_result ris__vk_fail(ris_device *vk, ris_error *err, VkResult result, const char *call, const char *file, int line)
 {
     const char *slash = strrchr(file, '/');
+    const bool named = vk && vk->info.name[0];
     ris_result code = RIS_ERROR_DEVICE;
     if (result == VK_ERROR_DEVICE_LOST && vk) {
         vk->lost = true;
@@ -75,6 +76,6 @@ ris_result ris__vk_fail(ris_device *vk, ris_error *err, VkResult result, const c
     if (result == VK_ERROR_OUT_OF_HOST_MEMORY || result == VK_ERROR_OUT_OF_DEVICE_MEMORY) {
         code = RIS_ERROR_MEMORY;
     }
-    return ris_fail(err, code, "%s%s%.*s failed with %s (%d) at %s:%d", vk ? vk->info.name : "", vk ? ": " : "",
+    return ris_fail(err, code, "%s%s%.*s failed with %s (%d) at %s:%d", named ? vk->info.name : "", named ? ": " : "",
                     call_length(call), call, ris_vk_result_name(result), (int)result, slash ? slash + 1 : file, line);
 }

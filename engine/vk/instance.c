@@ -73,14 +73,14 @@ fail:
 static ris_result create_messenger(ris_device *vk, const VkDebugUtilsMessengerCreateInfoEXT *info, ris_error *err)
 {
     ris_result result = RIS_OK;
-    PFN_vkCreateDebugUtilsMessengerEXT create =
+    PFN_vkCreateDebugUtilsMessengerEXT vk_create_messenger =
         (PFN_vkCreateDebugUtilsMessengerEXT)vkGetInstanceProcAddr(vk->instance, "vkCreateDebugUtilsMessengerEXT");
     vk->destroy_messenger =
         (PFN_vkDestroyDebugUtilsMessengerEXT)vkGetInstanceProcAddr(vk->instance, "vkDestroyDebugUtilsMessengerEXT");
-    if (!create || !vk->destroy_messenger) {
+    if (!vk_create_messenger || !vk->destroy_messenger) {
         return ris_fail(err, RIS_ERROR_DEVICE, "VK_EXT_debug_utils is present but its functions are not");
     }
-    RIS_VK(create(vk->instance, info, NULL, &vk->messenger));
+    RIS_VK(vk_create_messenger(vk->instance, info, NULL, &vk->messenger));
 fail:
     return result;
 }
