@@ -63,6 +63,10 @@ int main(int argc, char **argv)
     write_skin(&m);
     write_regions(&m);
     write_fields(&m);
+    write_eyes(&m);
+    write_teeth(&m);
+    write_tongue(&m);
+    write_hair(&m);
     if (muscles)
         write_muscles(&m);
     printf("%u skin vertices, %u quads, %u regions\n", m.skin.vertex_count, m.skin.quad_count, m.skin.region_count);

@@ -36,15 +36,15 @@ typedef struct topology {
 } topology;
 
 /* An edge loop: vertices in order. open loops end where the quads stop being regular. */
-typedef struct ring {
+typedef struct edge_loop {
     uint32_t count;
     uint32_t vertex[128];
-} ring;
+} edge_loop;
 
 /* Concentric rings around the mouth (both sides) or the left eye, from the outside in. */
 typedef struct ring_set {
     uint32_t count;
-    ring at[MAX_RINGS];
+    edge_loop at[MAX_RINGS];
     uint32_t corner[2]; /* column of the mouth corner; inner and outer corner of the eye */
 } ring_set;
 
@@ -126,7 +126,7 @@ void base_mesh_finish(base_mesh *mesh);
 void topology_build(topology *topo, const base_mesh *mesh, uint32_t body_end);
 void topology_finish(topology *topo);
 uint32_t next_on_loop(const topology *topo, uint32_t from, uint32_t at);
-void ring_walk(const topology *topo, uint32_t first, uint32_t second, ring *out);
+void ring_walk(const topology *topo, uint32_t first, uint32_t second, edge_loop *out);
 void rings_load(maker *m);
 
 /* skin.c */
@@ -162,6 +162,12 @@ void part_triangle(part *p, uint32_t a, uint32_t b, uint32_t c);
 part part_mirrored(const part *p);
 void part_append(part *to, const part *from);
 void part_finish(part *p);
+
+/* eye.c, teeth.c, tongue.c, hair.c */
+void write_eyes(const maker *m);
+void write_teeth(const maker *m);
+void write_tongue(const maker *m);
+void write_hair(const maker *m);
 
 /* muscles.c */
 void write_muscles(const maker *m);

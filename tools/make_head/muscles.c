@@ -13,19 +13,30 @@ static const char *text_of(json_t *entry, const char *key)
     return text;
 }
 
-static void put_point(FILE *file, const maker *m, double x, double y, bool first)
+/* On the skin in front of x, y; where that is another surface (the neck behind the jaw), nearest to the guess. */
+static void put_point(FILE *file, const maker *m, dvec guess, bool first)
 {
-    dvec p = to_head(&m->frame, skin_project(&m->skin, x, y, NULL));
+    dvec on = skin_project(&m->skin, guess.x, guess.y, NULL);
+    if (on.z < guess.z - 12 || on.z > guess.z + 12)
+        on = skin_nearest(&m->skin, guess, NULL);
+    dvec p = to_head(&m->frame, on);
     fprintf(file, "%s[%.3f, %.3f, %.3f]", first ? "" : ", ", p.x, p.y, p.z);
 }
 
 static void put_linear_grid(FILE *file, const maker *m, json_t *entry)
 {
-    double from[2], to[2], width[2], size[2];
+    double from[2], to[2], width[2], size[2], near[2];
     recipe_numbers(entry, "origin_xy", from, 2);
     recipe_numbers(entry, "insertion_xy", to, 2);
+    recipe_numbers(entry, "near_vertices", near, 2);
     recipe_numbers(entry, "half_width", width, 2);
     recipe_numbers(entry, "rows_columns", size, 2);
+    double z[2];
+    for (int k = 0; k < 2; k++) {
+        if (near[k] < 0 || near[k] >= m->topo.body_end)
+            stop("recipe: near vertex %g is off the body", near[k]);
+        z[k] = m->mesh.position[(uint32_t)near[k]].z;
+    }
     dvec across = v_unit(v3(-(to[1] - from[1]), to[0] - from[0], 0));
     if (across.x < 0)
         across = v_mul(across, -1);
@@ -35,8 +46,9 @@ static void put_linear_grid(FILE *file, const maker *m, json_t *entry)
         fprintf(file, "        [");
         for (int c = 0; c < columns; c++) {
             double s = half * (2.0 * c / (columns - 1) - 1);
-            put_point(file, m, from[0] + t * (to[0] - from[0]) + s * across.x,
-                      from[1] + t * (to[1] - from[1]) + s * across.y, c == 0);
+            dvec guess = v3(from[0] + t * (to[0] - from[0]) + s * across.x,
+                            from[1] + t * (to[1] - from[1]) + s * across.y, z[0] + t * (z[1] - z[0]));
+            put_point(file, m, guess, c == 0);
         }
         fprintf(file, "]%s\n", r + 1 < rows ? "," : "");
     }
@@ -67,7 +79,7 @@ static void put_lip_grid(FILE *file, const maker *m, json_t *entry)
                 p[k] = m->mesh.position[v];
             }
             double x = p[2].x * (2.0 * r / (rows - 1) - 1);
-            put_point(file, m, x, even_curve(p, x), c == 0);
+            put_point(file, m, v3(x, even_curve(p, x), p[1].z), c == 0);
         }
         fprintf(file, "]%s\n", r + 1 < rows ? "," : "");
     }

@@ -50,7 +50,7 @@ static void add_flood(const maker *m, json_t *rule, uint8_t *has)
     const topology *topo = &m->topo;
     json_t *bound = recipe_get(rule, "bounded_by");
     const ring_set *set = ring_set_named(m, json_string_value(json_array_get(bound, 0)));
-    const ring *wall = &set->at[(uint32_t)json_integer_value(json_array_get(bound, 1)) % MAX_RINGS];
+    const edge_loop *wall = &set->at[(uint32_t)json_integer_value(json_array_get(bound, 1)) % MAX_RINGS];
     uint8_t *seen = need(m->mesh.vertex_count, 1);
     uint32_t *stack = need(m->mesh.vertex_count, sizeof *stack), depth = 0;
     for (uint32_t k = 0; k < wall->count; k++)

@@ -20,7 +20,7 @@ dvec to_head(const head_frame *frame, dvec p)
     return v3(p.x, v_dot(d, frame->up), v_dot(d, frame->front));
 }
 
-static bool on_ring(const ring *cut, uint32_t a, uint32_t b)
+static bool on_ring(const edge_loop *cut, uint32_t a, uint32_t b)
 {
     for (uint32_t i = 0; i < cut->count; i++) {
         uint32_t p = cut->vertex[i], q = cut->vertex[(i + 1) % cut->count];
@@ -31,7 +31,7 @@ static bool on_ring(const ring *cut, uint32_t a, uint32_t b)
 }
 
 /* Marks the quads on the seed's side of the ring. */
-static uint8_t *flood_quads(const maker *m, const ring *cut, uint32_t seed)
+static uint8_t *flood_quads(const maker *m, const edge_loop *cut, uint32_t seed)
 {
     const topology *topo = &m->topo;
     uint8_t *in = need(m->mesh.quad_count, 1);
@@ -139,7 +139,7 @@ static void build_normals(skin *s)
 
 void skin_cut(maker *m)
 {
-    ring cut;
+    edge_loop cut;
     double edge[2];
     recipe_numbers(m->recipe, "neck_ring", edge, 2);
     ring_walk(&m->topo, (uint32_t)edge[0], (uint32_t)edge[1], &cut);

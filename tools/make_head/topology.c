@@ -129,7 +129,7 @@ uint32_t next_on_loop(const topology *topo, uint32_t from, uint32_t at)
     return NONE;
 }
 
-void ring_walk(const topology *topo, uint32_t first, uint32_t second, ring *out)
+void ring_walk(const topology *topo, uint32_t first, uint32_t second, edge_loop *out)
 {
     uint32_t from = first, at = second;
     out->count = 1;
