@@ -1,6 +1,5 @@
 /* KA-50: clips are sampled by time; linear mid-way is the mean of the keys, the spline passes through them,
- * any order of times gives the same values; empty and wrong clips are refused with file, line, column and
- * path. */
+ * any order of times gives the same values; empty and wrong clips are refused with their place. */
 #include "scratch.h"
 
 #include "anim/clip.h"
@@ -176,8 +175,7 @@ static void test_labels(void **state)
     expect_label(clip, 1, 4, "back");
     assert_null(ris_clip_label(clip, 2, NULL));
     ris_clip_destroy(clip);
-    /* without labels: key times at which the pose is another than the one before, named after what acts most
-     * */
+    /* without labels: key times at which the pose is another than the one before, named after what acts */
     clip = clip_of(CLIP(
         TRACK("smile", "{\"t\":0,\"v\":0},{\"t\":1,\"v\":1},{\"t\":2,\"v\":1},{\"t\":3,\"v\":0}") "," TRACK(
             "eye.yaw", "{\"t\":2,\"v\":0},{\"t\":3,\"v\":35}")));
