@@ -86,7 +86,7 @@ static ris_result expect_line_end(reader *r, const char *expected)
 
 static ris_result read_vertex(reader *r)
 {
-    ris_vec3 p;
+    ris_vec3 p = {0};
     ris_result result;
     if (r->mesh.vertex_count == MAX_VERTICES) {
         return ris_fail(r->err, RIS_ERROR_DATA, "%s:%u:1: more than %u vertices", r->name, r->line,
@@ -108,7 +108,7 @@ static ris_result read_vertex(reader *r)
 
 static ris_result read_uv(reader *r)
 {
-    float u, v, ignored;
+    float u = 0, v = 0, ignored;
     ris_result result;
     if (r->mesh.uv_count == MAX_VERTICES) {
         return ris_fail(r->err, RIS_ERROR_DATA, "%s:%u:1: more than %u texture vertices", r->name, r->line,
