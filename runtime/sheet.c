@@ -88,10 +88,8 @@ static void place(ris_sheet *sheet, uint32_t index, const uint8_t *rgba)
         }
     }
     char text[RIS_NAME_SIZE + 16];
-    snprintf(text, sizeof text, "%s", sheet->pose[index].label);
+    snprintf(text, sizeof text, "%s  %.1f s", sheet->pose[index].label, sheet->pose[index].time_s);
     ris_label_draw(sheet->rgba, sheet->width, sheet->height, (int)x + 12, (int)y + 12, 2, text);
-    snprintf(text, sizeof text, "%.2f s", sheet->pose[index].time_s);
-    ris_label_draw(sheet->rgba, sheet->width, sheet->height, (int)x + 12, (int)(y + 2 * CELL_HEIGHT) - 24, 1, text);
 }
 
 ris_result sheet_take(ris_sheet *sheet, ris_player *player, double time_s, ris_error *err)

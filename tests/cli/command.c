@@ -56,7 +56,7 @@ static void sleep_ms(int ms)
     nanosleep(&pause, NULL);
 }
 
-void command_run(command *command, const command_def *def, const char *line)
+void command_run(run_result *result, const command_def *def, const char *line)
 {
     static const command_def plain;
     char *copy = malloc(strlen(line) + 1);
@@ -86,9 +86,9 @@ void command_run(command *command, const command_def *def, const char *line)
     int status = 0;
     while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {
     }
-    command->code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    take_text(out, command->out, sizeof command->out);
-    take_text(err, command->err, sizeof command->err);
+    result->code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    take_text(out, result->out, sizeof result->out);
+    take_text(err, result->err, sizeof result->err);
     free(copy);
 }
 

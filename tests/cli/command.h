@@ -7,11 +7,11 @@
 
 #define COMMAND_PATH_SIZE 4096
 
-typedef struct command {
+typedef struct run_result {
     int code;             /* exit code, or 128 + signal */
     char out[256 * 1024]; /* standard output */
     char err[64 * 1024];  /* standard error */
-} command;
+} run_result;
 
 /* How a run differs from a plain one; zeroed = plain. */
 typedef struct command_def {
@@ -23,7 +23,7 @@ typedef struct command_def {
 } command_def;
 
 /* Runs build/bin/risorius with the words of `line`, which are parted by blanks ('@' in a word stands for a blank). */
-void command_run(command *command, const command_def *def, const char *line);
+void command_run(run_result *result, const command_def *def, const char *line);
 
 /* A fresh folder for one test, "name" below the build; emptied first. */
 void command_folder(char out[COMMAND_PATH_SIZE], const char *name);

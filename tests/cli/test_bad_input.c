@@ -12,7 +12,7 @@
 #define HEAD RIS_SOURCE_DIR "/assets/human"
 #define CLIP RIS_SOURCE_DIR "/assets/clips/first_light.json"
 
-static command run;
+static run_result run;
 
 static void expect_code(const char *what, int code, const char *in_err)
 {

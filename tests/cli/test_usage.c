@@ -13,7 +13,7 @@
 #define HEAD RIS_SOURCE_DIR "/assets/human"
 #define CLIP RIS_SOURCE_DIR "/assets/clips/first_light.json"
 
-static command run;
+static run_result run;
 
 static const char *const commands[] = {"devices", "info", "view", "render", "export", "compare", "bench", "validate"};
 
