@@ -8,7 +8,7 @@
 
 #define RIS_DRAW_COLOR_FORMAT VK_FORMAT_R8G8B8A8_SRGB
 #define RIS_DRAW_DEPTH_FORMAT VK_FORMAT_D32_SFLOAT
-#define RIS_DRAW_SHADOW_SIDE 1024u
+#define RIS_DRAW_SHADOW_SIDE 640u
 
 /* Images of one size. color is the resolved picture; it rests in TRANSFER_SRC_OPTIMAL between frames. */
 typedef struct ris_draw_target {
@@ -30,6 +30,7 @@ typedef struct ris_draw_store {
     ris_vk_buffer term_start, term, ring_start, ring, ride;
     ris_vk_buffer position, normal, rest, corner, index, line;
     ris_vk_image *texture; /* (texture_count + 1), the last one white */
+    ris_vk_image *detail;  /* beside each texture; without handle where there is none; the last one flat */
     uint32_t texture_count;
     VkSampler sampler, shadow_sampler;
 } ris_draw_store;
@@ -53,8 +54,13 @@ struct ris_draw {
 /* store.c */
 ris_result ris__draw_store_create(ris_draw *draw, ris_error *err);
 void ris__draw_store_finish(ris_draw *draw);
-/* texture.c: an sRGB image file with mips. RIS_ERROR_DATA names the file. pixels 1x1 white when path is NULL. */
-ris_result ris__draw_texture_load(ris_device *device, const char *path, ris_vk_image *out, ris_error *err);
+/* texture.c: an image file with mips. RIS_ERROR_DATA names the file. */
+ris_result ris__draw_texture_load(ris_device *device, const char *path, VkFormat format, ris_vk_image *out, ris_error *err);
+/* One pixel. */
+ris_result ris__draw_texture_plain(ris_device *device, const uint8_t rgba[4], VkFormat format, ris_vk_image *out,
+                                   ris_error *err);
+/* The linear detail texture beside a colour texture: "<stem>_detail.png"; leaves *out zeroed where there is no such file. */
+ris_result ris__draw_texture_detail(ris_device *device, const char *color_path, ris_vk_image *out, ris_error *err);
 /* target.c */
 ris_result ris__draw_target_create(ris_device *device, uint32_t width, uint32_t height, ris_draw_target *out, ris_error *err);
 void ris__draw_target_finish(ris_device *device, ris_draw_target *target);

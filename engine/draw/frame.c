@@ -5,6 +5,8 @@
 
 #include <string.h>
 
+#define RELIEF_MM 0.5f /* height between black and white of a detail texture */
+
 static void dispatch(const ris_draw *draw, VkCommandBuffer cmd, VkPipeline pipeline, uint32_t count)
 {
     const ris_draw_count push = {count};
@@ -22,9 +24,10 @@ static void record_surface(const ris_draw *draw, VkCommandBuffer cmd)
     ris_vk_barrier(cmd, compute, write, compute, read);
     dispatch(draw, cmd, draw->normal, draw->scene.skin_count);
     if (draw->scene.ride_count > 0) {
+        ris_vk_barrier(cmd, compute, write, compute, read | write); /* one buffer holds skin and riding parts */
         dispatch(draw, cmd, draw->ride, draw->scene.ride_count);
     }
-    ris_vk_barrier(cmd, compute, write, VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT, read);
+    ris_vk_barrier(cmd, compute, write, VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, read);
 }
 
 /* row-major 3x4: a after b */
@@ -54,7 +57,7 @@ static void draw_item(const ris_draw *draw, VkCommandBuffer cmd, const ris_sim *
     }
     chain(head, bone, place);
     ris_draw_object object = {.tint = {item->tint.x, item->tint.y, item->tint.z, textured ? 1.0f : 0.0f},
-                              .pivot = {item->pivot.x, item->pivot.y, item->pivot.z, 0.0f}};
+                              .pivot = {item->pivot.x, item->pivot.y, item->pivot.z, RELIEF_MM}};
     memcpy(object.place, place, sizeof place);
     vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, draw->graphics_layout, 0, 1,
                             draw->graphics_sets[set].set, 0, NULL);

@@ -4,8 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define DIRECTIONS 96
-#define SIDE 320     /* pixels of a depth picture */
+#define DIRECTIONS 64
+#define SIDE 256     /* pixels of a depth picture */
 #define BIAS_MM 1.5f /* a point this near below the nearest surface is seen */
 
 typedef struct view {
@@ -43,41 +43,54 @@ static ris_vec3 project(const view *in, ris_vec3 p)
                       dot(p, in->z)};
 }
 
+static int clamp_pixel(float at)
+{
+    return at < 0.0f ? 0 : at > SIDE - 1 ? SIDE - 1 : (int)at;
+}
+
+static float least(float a, float b, float c)
+{
+    float m = a < b ? a : b;
+    return m < c ? m : c;
+}
+
+/* Triangles seen from behind are skipped: a closed surface has a nearer one in front. */
 static void fill_triangle(view *in, ris_vec3 a, ris_vec3 b, ris_vec3 c)
 {
     float area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-    if (area == 0.0f) {
+    if (!(area > 1e-6f)) {
         return;
     }
-    int x0 = (int)fmaxf(floorf(fminf(fminf(a.x, b.x), c.x)), 0.0f);
-    int x1 = (int)fminf(ceilf(fmaxf(fmaxf(a.x, b.x), c.x)), SIDE - 1);
-    int y0 = (int)fmaxf(floorf(fminf(fminf(a.y, b.y), c.y)), 0.0f);
-    int y1 = (int)fminf(ceilf(fmaxf(fmaxf(a.y, b.y), c.y)), SIDE - 1);
+    int x0 = clamp_pixel(least(a.x, b.x, c.x) - 0.5f), x1 = clamp_pixel(-least(-a.x, -b.x, -c.x) + 0.5f);
+    int y0 = clamp_pixel(least(a.y, b.y, c.y) - 0.5f), y1 = clamp_pixel(-least(-a.y, -b.y, -c.y) + 0.5f);
+    float inverse = 1.0f / area, du = (b.y - c.y) * inverse, dv = (c.y - a.y) * inverse;
     for (int y = y0; y <= y1; y++) {
-        for (int x = x0; x <= x1; x++) {
-            float px = (float)x + 0.5f, py = (float)y + 0.5f;
-            float u = ((b.x - px) * (c.y - py) - (b.y - py) * (c.x - px)) / area;
-            float v = ((c.x - px) * (a.y - py) - (c.y - py) * (a.x - px)) / area;
+        float px = (float)x0 + 0.5f, py = (float)y + 0.5f;
+        float u = ((b.x - px) * (c.y - py) - (b.y - py) * (c.x - px)) * inverse;
+        float v = ((c.x - px) * (a.y - py) - (c.y - py) * (a.x - px)) * inverse;
+        for (int x = x0; x <= x1; x++, u += du, v += dv) {
             float w = 1.0f - u - v;
-            if (u < 0.0f || v < 0.0f || w < 0.0f) {
-                continue;
+            if (u >= 0.0f && v >= 0.0f && w >= 0.0f) {
+                float z = u * a.z + v * b.z + w * c.z, *at = &in->depth[y * SIDE + x];
+                *at = z > *at ? z : *at;
             }
-            float z = u * a.z + v * b.z + w * c.z, *at = &in->depth[y * SIDE + x];
-            *at = z > *at ? z : *at;
         }
     }
 }
 
-static void draw_depth(view *in, const ris_occluder *occluder, uint32_t occluder_count)
+/* at: room for the projected vertices of the largest occluder. */
+static void draw_depth(view *in, const ris_occluder *occluder, uint32_t occluder_count, ris_vec3 *at)
 {
     for (int i = 0; i < SIDE * SIDE; i++) {
         in->depth[i] = -FLT_MAX;
     }
     for (uint32_t o = 0; o < occluder_count; o++) {
         const ris_occluder *from = &occluder[o];
+        for (uint32_t i = 0; i < from->position_count; i++) {
+            at[i] = project(in, from->position[i]);
+        }
         for (uint32_t i = 0; i + 2 < from->index_count; i += 3) {
-            fill_triangle(in, project(in, from->position[from->index[i]]), project(in, from->position[from->index[i + 1]]),
-                          project(in, from->position[from->index[i + 2]]));
+            fill_triangle(in, at[from->index[i]], at[from->index[i + 1]], at[from->index[i + 2]]);
         }
     }
 }
@@ -87,8 +100,8 @@ static float bounds(const ris_occluder *occluder, uint32_t occluder_count, ris_v
 {
     ris_vec3 low = {FLT_MAX, FLT_MAX, FLT_MAX}, high = {-FLT_MAX, -FLT_MAX, -FLT_MAX};
     for (uint32_t o = 0; o < occluder_count; o++) {
-        for (uint32_t i = 0; i < occluder[o].index_count; i++) {
-            ris_vec3 p = occluder[o].position[occluder[o].index[i]];
+        for (uint32_t i = 0; i < occluder[o].position_count; i++) {
+            ris_vec3 p = occluder[o].position[i];
             low = (ris_vec3){fminf(low.x, p.x), fminf(low.y, p.y), fminf(low.z, p.z)};
             high = (ris_vec3){fmaxf(high.x, p.x), fmaxf(high.y, p.y), fmaxf(high.z, p.z)};
         }
@@ -117,7 +130,13 @@ ris_result ris__occlusion(const ris_occluder *occluder, uint32_t occluder_count,
 {
     view in = {.depth = malloc(SIDE * SIDE * sizeof *in.depth)};
     float *total = calloc(point_count + 1, sizeof *total);
-    if (in.depth == NULL || total == NULL) {
+    uint32_t largest = 1;
+    for (uint32_t o = 0; o < occluder_count; o++) {
+        largest = occluder[o].position_count > largest ? occluder[o].position_count : largest;
+    }
+    ris_vec3 *at = malloc(largest * sizeof *at);
+    if (in.depth == NULL || total == NULL || at == NULL) {
+        free(at);
         free(in.depth);
         free(total);
         return ris_fail(err, RIS_ERROR_MEMORY, "out of memory for the occlusion of %u points", (unsigned)point_count);
@@ -132,7 +151,7 @@ ris_result ris__occlusion(const ris_occluder *occluder, uint32_t occluder_count,
         aim(&in, direction(d));
         in.cx = dot(centre, in.x);
         in.cy = dot(centre, in.y);
-        draw_depth(&in, occluder, occluder_count);
+        draw_depth(&in, occluder, occluder_count, at);
         for (uint32_t i = 0; i < point_count; i++) {
             float facing = dot(normal[i], in.z);
             if (facing > 0.0f) {
@@ -146,6 +165,7 @@ ris_result ris__occlusion(const ris_occluder *occluder, uint32_t occluder_count,
     for (uint32_t i = 0; i < point_count; i++) {
         out[i] = total[i] > 0.0f ? out[i] / total[i] : 1.0f;
     }
+    free(at);
     free(in.depth);
     free(total);
     return RIS_OK;

@@ -5,6 +5,7 @@
 #include "risorius/base.h"
 
 typedef struct ris_occluder {
+    uint32_t position_count;
     const ris_vec3 *position;
     const uint32_t *index; /* triangles (index_count) */
     uint32_t index_count;

@@ -77,6 +77,9 @@ static ris_result create_sets(ris_draw *draw, ris_error *err)
         }
         ris_vk_sets_write_image(device, sets, 0, RIS_DRAW_BIND_COLOR, store->texture[t].view,
                                 VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, store->sampler);
+        uint32_t detail = store->detail[t].handle ? t : store->texture_count;
+        ris_vk_sets_write_image(device, sets, 0, RIS_DRAW_BIND_DETAIL, store->detail[detail].view,
+                                VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, store->sampler);
         ris_vk_sets_write_image(device, sets, 0, RIS_DRAW_BIND_SHADOW, draw->shadow.view,
                                 VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, store->shadow_sampler);
     }
@@ -110,7 +113,8 @@ static ris_result create_graphics(ris_draw *draw, ris_error *err)
     def[RIS_DRAW_PIPE_MOUTH] = picture_def(draw, RIS_VK_CODE(ris_spv_mouth_frag), "draw mouth");
     def[RIS_DRAW_PIPE_HAIR] = picture_def(draw, RIS_VK_CODE(ris_spv_hair_frag), "draw hair");
     def[RIS_DRAW_PIPE_HAIR].cull = VK_CULL_MODE_NONE;
-    def[RIS_DRAW_PIPE_HAIR].alpha_to_coverage = true;
+    def[RIS_DRAW_PIPE_HAIR].blend = true;
+    def[RIS_DRAW_PIPE_HAIR].depth_write = false;
     def[RIS_DRAW_PIPE_CORNEA] = picture_def(draw, RIS_VK_CODE(ris_spv_cornea_frag), "draw cornea");
     def[RIS_DRAW_PIPE_CORNEA].blend = true;
     def[RIS_DRAW_PIPE_CORNEA].depth_write = false;

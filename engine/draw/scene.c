@@ -91,41 +91,58 @@ static void finish_piece(piece *from)
     free(from->ride_triangle);
 }
 
-/* Skin and eyes shade each other; the rest of the parts has its own rules in its shader. */
+static bool is_shaded(const piece *of)
+{
+    return of->part == NULL || of->part->material == RIS_MATERIAL_EYE || of->part->material == RIS_MATERIAL_CORNEA;
+}
+
+static bool casts(const piece *of)
+{
+    return of->part == NULL || of->part->material == RIS_MATERIAL_EYE;
+}
+
+/* Skin and eyes shade each other; the rest of the parts has its own rules in its shader. All in one set of arrays, so
+ * that the depth pictures are made once. */
 static ris_result occlude(piece *all, uint32_t count, ris_error *err)
 {
-    ris_occluder *occluder = room(count, sizeof *occluder);
-    uint32_t **index = room(count, sizeof *index);
-    uint32_t used = 0;
-    ris_result result = occluder && index ? RIS_OK : ris_fail(err, RIS_ERROR_MEMORY, "out of memory for occlusion");
-    for (uint32_t i = 0; i < count && result == RIS_OK; i++) {
+    size_t points = 0, corners = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        points += is_shaded(&all[i]) ? all[i].refined.vertex_count : 0;
+        corners += casts(&all[i]) ? all[i].refined.index_count : 0;
+    }
+    ris_vec3 *point = room(points, sizeof *point), *normal = room(points, sizeof *normal);
+    float *share = room(points, sizeof *share);
+    uint32_t *index = room(corners, sizeof *index), at = 0, used = 0;
+    ris_result result = RIS_OK;
+    if (point == NULL || normal == NULL || share == NULL || index == NULL) {
+        result = ris_fail(err, RIS_ERROR_MEMORY, "out of memory for occlusion");
+        goto done;
+    }
+    for (uint32_t i = 0; i < count; i++) {
         const ris_refined *from = &all[i].refined;
-        if (all[i].part != NULL && all[i].part->material != RIS_MATERIAL_EYE) {
-            continue;
+        for (uint32_t k = 0; casts(&all[i]) && k < from->index_count; k++) {
+            index[used++] = from->corner[from->index[k]].vertex + at;
         }
-        index[i] = room(from->index_count, sizeof **index);
-        if (index[i] == NULL) {
-            result = ris_fail(err, RIS_ERROR_MEMORY, "out of memory for occlusion");
-            break;
+        if (is_shaded(&all[i])) {
+            memcpy(point + at, all[i].position, from->vertex_count * sizeof *point);
+            memcpy(normal + at, all[i].normal, from->vertex_count * sizeof *normal);
+            at += from->vertex_count;
         }
-        for (uint32_t k = 0; k < from->index_count; k++) {
-            index[i][k] = from->corner[from->index[k]].vertex;
-        }
-        occluder[used++] = (ris_occluder){all[i].position, index[i], from->index_count};
     }
+    const ris_occluder occluder = {at, point, index, used};
+    result = ris__occlusion(&occluder, 1, point, normal, at, share, err);
+    at = 0;
     for (uint32_t i = 0; i < count && result == RIS_OK; i++) {
-        bool seen = all[i].part == NULL || all[i].part->material == RIS_MATERIAL_EYE ||
-                    all[i].part->material == RIS_MATERIAL_CORNEA;
-        if (seen) {
-            result = ris__occlusion(occluder, used, all[i].position, all[i].normal, all[i].refined.vertex_count,
-                                    all[i].occlusion, err);
+        if (is_shaded(&all[i])) {
+            memcpy(all[i].occlusion, share + at, all[i].refined.vertex_count * sizeof *share);
+            at += all[i].refined.vertex_count;
         }
     }
-    for (uint32_t i = 0; i < count && index != NULL; i++) {
-        free(index[i]);
-    }
+done:
+    free(point);
+    free(normal);
+    free(share);
     free(index);
-    free(occluder);
     return result;
 }
 
@@ -277,7 +294,7 @@ static bool reserve(ris_draw_scene *out, const piece *all, uint32_t count)
            out->item && out->texture;
 }
 
-/* Drawing order: opaque first, hair by coverage next, clear shells last. */
+/* Drawing order: opaque first, hair next, clear shells last. */
 static int draw_rank(const piece *of)
 {
     if (of->part == NULL) {
@@ -295,6 +312,39 @@ static void find_mouth(ris_draw_scene *out, const piece *all, uint32_t count)
         }
     }
     out->mouth = (ris_vec4){front > -FLT_MAX ? front : 0.0f, 32.0f, 0.0f, 0.0f};
+}
+
+/* The two nodes in the middle of the mouth that face each other nearest, one looking down, one up. */
+static void find_lips(ris_draw_scene *out, const ris_model *model)
+{
+    const ris_region *lips = ris_head_region(model->head, "lips");
+    float nearest = 6.0f * 6.0f;
+    for (uint32_t i = 0; lips != NULL && i < lips->count; i++) {
+        uint32_t a = lips->vertex[i];
+        ris_vec4 p = model->rest_position[a];
+        for (uint32_t k = 0; k < lips->count && fabsf(p.x) < 3.0f && model->rest_normal[a].y < -0.4f; k++) {
+            uint32_t b = lips->vertex[k];
+            ris_vec4 q = model->rest_position[b];
+            float dx = p.x - q.x, dy = p.y - q.y, dz = p.z - q.z, d2 = 9.0f * dx * dx + dy * dy + dz * dz;
+            if (model->rest_normal[b].y > 0.4f && dy > 0.0f && d2 < nearest) {
+                nearest = d2;
+                out->lip[0] = a;
+                out->lip[1] = b;
+            }
+        }
+    }
+}
+
+/* A head with eyes is a bust: its lower end is cut off somewhere in the neck, and that cut is not shown. */
+static void find_fade(ris_draw_scene *out, const ris_model *model)
+{
+    for (uint32_t i = 0; i < model->head->part_count; i++) {
+        if (model->head->part[i].material == RIS_MATERIAL_EYE) {
+            float size = out->high.y - out->low.y;
+            out->fade[0] = out->low.y + 0.07f * size;
+            out->fade[1] = out->low.y + 0.29f * size;
+        }
+    }
 }
 
 static ris_result assemble(const ris_model *model, piece *all, uint32_t count, ris_draw_scene *out, ris_error *err)
@@ -319,6 +369,8 @@ static ris_result assemble(const ris_model *model, piece *all, uint32_t count, r
     }
     add_lines(out, &all[0].refined);
     find_mouth(out, all, count);
+    find_lips(out, model);
+    find_fade(out, model);
     /* the skin keeps its weights and rings: taken over, not copied */
     ris_refined *skin = &all[0].refined;
     out->skin_count = skin->vertex_count;

@@ -17,19 +17,27 @@ static ris_result fill(ris_device *device, const char *name, const void *data, s
 static ris_result load_textures(ris_draw *draw, ris_error *err)
 {
     ris_draw_store *store = &draw->store;
-    store->texture = calloc(draw->scene.texture_count + 1, sizeof *store->texture);
-    if (store->texture == NULL) {
-        return ris_fail(err, RIS_ERROR_MEMORY, "out of memory for %u textures", (unsigned)draw->scene.texture_count);
+    static const uint8_t white[4] = {255, 255, 255, 255}, flat[4] = {128, 110, 0, 255};
+    uint32_t count = draw->scene.texture_count;
+    store->texture = calloc(count + 1, sizeof *store->texture);
+    store->detail = calloc(count + 1, sizeof *store->detail);
+    if (store->texture == NULL || store->detail == NULL) {
+        return ris_fail(err, RIS_ERROR_MEMORY, "out of memory for %u textures", (unsigned)count);
     }
-    store->texture_count = draw->scene.texture_count;
-    for (uint32_t i = 0; i <= store->texture_count; i++) {
-        const char *path = i < store->texture_count ? draw->scene.texture[i] : NULL;
-        ris_result result = ris__draw_texture_load(draw->device, path, &store->texture[i], err);
+    store->texture_count = count;
+    for (uint32_t i = 0; i < count; i++) {
+        const char *path = draw->scene.texture[i];
+        ris_result result = ris__draw_texture_load(draw->device, path, VK_FORMAT_R8G8B8A8_UNORM, &store->texture[i], err);
+        if (result == RIS_OK) {
+            result = ris__draw_texture_detail(draw->device, path, &store->detail[i], err);
+        }
         if (result != RIS_OK) {
             return result;
         }
     }
-    return RIS_OK;
+    ris_result result = ris__draw_texture_plain(draw->device, white, VK_FORMAT_R8G8B8A8_UNORM, &store->texture[count], err);
+    return result != RIS_OK ? result : ris__draw_texture_plain(draw->device, flat, VK_FORMAT_R8G8B8A8_UNORM,
+                                                               &store->detail[count], err);
 }
 
 static ris_result create_shadow_sampler(ris_draw *draw, ris_error *err)
@@ -91,10 +99,12 @@ void ris__draw_store_finish(ris_draw *draw)
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
         ris_vk_buffer_finish(device, all[i]);
     }
-    for (uint32_t i = 0; store->texture != NULL && i <= store->texture_count; i++) {
+    for (uint32_t i = 0; store->texture != NULL && store->detail != NULL && i <= store->texture_count; i++) {
         ris_vk_image_finish(device, &store->texture[i]);
+        ris_vk_image_finish(device, &store->detail[i]);
     }
     free(store->texture);
+    free(store->detail);
     vkDestroySampler(device->handle, store->sampler, NULL);
     vkDestroySampler(device->handle, store->shadow_sampler, NULL);
     ris_vk_image_finish(device, &draw->shadow);

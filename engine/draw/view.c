@@ -29,6 +29,42 @@ static ris_vec3 unit(ris_vec3 v, ris_vec3 fallback)
     return length > 1e-6f ? (ris_vec3){v.x / length, v.y / length, v.z / length} : fallback;
 }
 
+/* A face by its eyes: everything from the crown to below an open jaw, in eye distances. */
+static bool frame_eyes(const ris_head *head, ris_vec3 *centre, float *half, float *depth)
+{
+    const ris_part_def *left = NULL, *right = NULL;
+    for (uint32_t i = 0; i < head->part_count; i++) {
+        left = head->part[i].bone == RIS_BONE_EYE_L ? &head->part[i] : left;
+        right = head->part[i].bone == RIS_BONE_EYE_R ? &head->part[i] : right;
+    }
+    if (left == NULL || right == NULL || left->pivot.x - right->pivot.x < 1.0f) {
+        return false;
+    }
+    float span = left->pivot.x - right->pivot.x;
+    *centre = (ris_vec3){0.5f * (left->pivot.x + right->pivot.x), 0.5f * (left->pivot.y + right->pivot.y) - 0.22f * span,
+                         0.5f * (left->pivot.z + right->pivot.z) - 0.55f * span};
+    *half = 2.12f * span;
+    *depth = 0.6f * span;
+    return true;
+}
+
+/* Anything else by the box of what moves. */
+static void frame_nodes(const ris_model *model, ris_vec3 *centre, float *half, float *depth)
+{
+    ris_vec3 low = {FLT_MAX, FLT_MAX, FLT_MAX}, high = {-FLT_MAX, -FLT_MAX, -FLT_MAX};
+    for (uint32_t i = 0; i < model->node_count; i++) {
+        ris_vec4 p = model->rest_position[i];
+        if (p.w > 0.0f || model->moving_count == 0) {
+            low = (ris_vec3){fminf(low.x, p.x), fminf(low.y, p.y), fminf(low.z, p.z)};
+            high = (ris_vec3){fmaxf(high.x, p.x), fmaxf(high.y, p.y), fmaxf(high.z, p.z)};
+        }
+    }
+    ris_vec3 size = minus(high, low);
+    *centre = (ris_vec3){0.5f * (low.x + high.x), 0.5f * (low.y + high.y), 0.5f * (low.z + high.z)};
+    *half = fmaxf(0.56f * fmaxf(size.y, 0.8f * fmaxf(size.x, size.z)), 1.0f);
+    *depth = 0.5f * size.z;
+}
+
 bool ris_camera_named(const ris_model *model, const char *name, ris_camera *out)
 {
     float turn_deg;
@@ -41,19 +77,12 @@ bool ris_camera_named(const ris_model *model, const char *name, ris_camera *out)
     } else {
         return false;
     }
-    ris_vec3 low = {FLT_MAX, FLT_MAX, FLT_MAX}, high = {-FLT_MAX, -FLT_MAX, -FLT_MAX};
-    bool any_moving = model->moving_count > 0;
-    for (uint32_t i = 0; i < model->node_count; i++) {
-        ris_vec4 p = model->rest_position[i];
-        if (p.w > 0.0f || !any_moving) {
-            low = (ris_vec3){fminf(low.x, p.x), fminf(low.y, p.y), fminf(low.z, p.z)};
-            high = (ris_vec3){fmaxf(high.x, p.x), fmaxf(high.y, p.y), fmaxf(high.z, p.z)};
-        }
+    ris_vec3 centre;
+    float half, depth, fov_deg = 18.0f;
+    if (!frame_eyes(model->head, &centre, &half, &depth)) {
+        frame_nodes(model, &centre, &half, &depth);
     }
-    ris_vec3 centre = {0.5f * (low.x + high.x), 0.5f * (low.y + high.y), 0.5f * (low.z + high.z)};
-    ris_vec3 size = minus(high, low);
-    float half = 0.5f * fmaxf(size.y, 0.8f * fmaxf(size.x, size.z)) * 1.12f, fov_deg = 18.0f;
-    float away = half / tanf(0.5f * fov_deg * PI / 180.0f) + 0.5f * size.z;
+    float away = half / tanf(0.5f * fov_deg * PI / 180.0f) + depth;
     float turn = turn_deg * PI / 180.0f;
     *out = (ris_camera){.eye = {centre.x + away * sinf(turn), centre.y, centre.z + away * cosf(turn)},
                         .target = centre, .up = {0.0f, 1.0f, 0.0f}, .fov_y_deg = fov_deg};
@@ -116,6 +145,8 @@ void ris__draw_view_fill(const ris_draw *draw, const ris_camera *camera, const f
     out->ground = (ris_vec4){0.17f, 0.15f, 0.14f, 0.0f};
     light_rows((ris_vec3){out->light[0].x, out->light[0].y, out->light[0].z}, centre, radius, out->shadow);
     out->mouth = scene->mouth;
+    memcpy(out->lip, scene->lip, sizeof out->lip);
+    memcpy(out->fade, scene->fade, sizeof out->fade);
     out->size = (ris_vec4){(float)draw->target.width, (float)draw->target.height, (float)RIS_DRAW_SHADOW_SIDE,
                            2.0f * radius / (float)RIS_DRAW_SHADOW_SIDE};
 }

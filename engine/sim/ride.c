@@ -117,28 +117,79 @@ ris_vec3 ris__ride_place(const ris_ride *ride, const ris_vec4 *position)
     return at;
 }
 
-/* Nearest skin triangle of every mesh vertex, by trying all triangles whose box is near enough. */
-static void find_nearest(const ris_model *model, const ris_mesh *mesh, uint32_t *triangle, float *distance2)
+/* A skin triangle with its extent along x, for a sweep. */
+typedef struct span {
+    float low, high;
+    uint32_t triangle;
+} span;
+
+static int compare_span(const void *left, const void *right)
+{
+    const span *l = left, *r = right;
+    return l->low < r->low ? -1 : l->low > r->low ? 1 : l->triangle < r->triangle ? -1 : 1;
+}
+
+static span *sort_spans(const ris_model *model, float *out_widest)
+{
+    span *all = malloc((model->triangle_count + 1) * sizeof *all);
+    *out_widest = 0.0f;
+    for (uint32_t t = 0; all != NULL && t < model->triangle_count; t++) {
+        const uint32_t *n = model->triangle + 3 * (size_t)t;
+        float a = model->rest_position[n[0]].x, b = model->rest_position[n[1]].x, c = model->rest_position[n[2]].x;
+        all[t] = (span){fminf(fminf(a, b), c), fmaxf(fmaxf(a, b), c), t};
+        *out_widest = fmaxf(*out_widest, all[t].high - all[t].low);
+    }
+    if (all != NULL) {
+        qsort(all, model->triangle_count, sizeof *all, compare_span);
+    }
+    return all;
+}
+
+static void try_triangle(const ris_model *model, uint32_t t, ris_vec3 p, uint32_t *triangle, float *distance2)
+{
+    const uint32_t *n = model->triangle + 3 * (size_t)t;
+    float share[3], d2 = ris__ride_nearest(p, xyz(model->rest_position[n[0]]), xyz(model->rest_position[n[1]]),
+                                           xyz(model->rest_position[n[2]]), share);
+    if (d2 < *distance2) {
+        *distance2 = d2;
+        *triangle = t;
+    }
+}
+
+/* Nearest skin triangle of every mesh vertex: triangles sorted along x, tried outwards from the vertex until the gap
+ * along x alone is larger than the best distance. */
+static void find_nearest(const ris_model *model, const span *all, float widest, const ris_mesh *mesh, uint32_t *triangle,
+                         float *distance2)
 {
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
         ris_vec3 p = mesh->position[v];
-        distance2[v] = FLT_MAX;
-        triangle[v] = 0;
-        for (uint32_t t = 0; t < model->triangle_count; t++) {
-            const uint32_t *n = model->triangle + 3 * (size_t)t;
-            ris_vec3 a = xyz(model->rest_position[n[0]]), b = xyz(model->rest_position[n[1]]);
-            ris_vec3 c = xyz(model->rest_position[n[2]]);
-            /* cheap bound: the box of the triangle is farther than the best so far */
-            float dx = fmaxf(fmaxf(fminf(fminf(a.x, b.x), c.x) - p.x, p.x - fmaxf(fmaxf(a.x, b.x), c.x)), 0.0f);
-            float dy = fmaxf(fmaxf(fminf(fminf(a.y, b.y), c.y) - p.y, p.y - fmaxf(fmaxf(a.y, b.y), c.y)), 0.0f);
-            float dz = fmaxf(fmaxf(fminf(fminf(a.z, b.z), c.z) - p.z, p.z - fmaxf(fmaxf(a.z, b.z), c.z)), 0.0f);
-            if (dx * dx + dy * dy + dz * dz >= distance2[v]) {
-                continue;
+        uint32_t low = 0, high = model->triangle_count;
+        while (low < high) { /* first span that starts beyond p.x */
+            uint32_t middle = low + (high - low) / 2;
+            if (all[middle].low > p.x) {
+                high = middle;
+            } else {
+                low = middle + 1;
             }
-            float share[3], d2 = ris__ride_nearest(p, a, b, c, share);
-            if (d2 < distance2[v]) {
-                distance2[v] = d2;
-                triangle[v] = t;
+        }
+        triangle[v] = v > 0 ? triangle[v - 1] : 0; /* a neighbour: most likely near */
+        distance2[v] = FLT_MAX;
+        try_triangle(model, triangle[v], p, &triangle[v], &distance2[v]);
+        for (uint32_t i = low; i < model->triangle_count; i++) {
+            float gap = all[i].low - p.x;
+            if (gap * gap > distance2[v]) {
+                break;
+            }
+            try_triangle(model, all[i].triangle, p, &triangle[v], &distance2[v]);
+        }
+        for (uint32_t i = low; i-- > 0;) {
+            float gap = p.x - all[i].low - widest;
+            if (gap > 0.0f && gap * gap > distance2[v]) {
+                break;
+            }
+            float own = p.x - all[i].high;
+            if (own <= 0.0f || own * own <= distance2[v]) {
+                try_triangle(model, all[i].triangle, p, &triangle[v], &distance2[v]);
             }
         }
     }
@@ -170,14 +221,17 @@ ris_result ris__ride_bind(const ris_model *model, const ris_mesh *mesh, ris_ride
 {
     size_t count = mesh->vertex_count > 0 ? mesh->vertex_count : 1;
     uint32_t *triangle = malloc(count * sizeof *triangle);
-    float *distance2 = malloc(count * sizeof *distance2);
-    if (triangle == NULL || distance2 == NULL) {
+    float *distance2 = malloc(count * sizeof *distance2), widest;
+    span *all = sort_spans(model, &widest);
+    if (triangle == NULL || distance2 == NULL || all == NULL) {
+        free(all);
         free(triangle);
         free(distance2);
         return ris_fail(err, RIS_ERROR_MEMORY, "out of memory for a skin-bound part of %u vertices",
                         (unsigned)mesh->vertex_count);
     }
-    find_nearest(model, mesh, triangle, distance2);
+    find_nearest(model, all, widest, mesh, triangle, distance2);
+    free(all);
     spread_roots(mesh, triangle, distance2);
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
         const uint32_t *n = model->triangle + 3 * (size_t)triangle[v];

@@ -14,14 +14,14 @@ void main()
 {
     vec3 n = normalize(in_normal), v = normalize(view.eye.xyz - in_world);
     float ndv = clamp(dot(n, v), 0.0, 1.0);
-    float fresnel = 0.03 + 0.97 * pow(1.0 - ndv, 5.0);
+    float fresnel = 0.03 + 0.97 * fifth(1.0 - ndv);
     float ao = clamp(in_rest.w, 0.0, 1.0);
-    vec3 mirror = studio(reflect(-v, n)) * fresnel * mix(0.2, 1.0, smoothstep(0.15, 0.5, ao));
+    vec3 mirror = studio(reflect(-v, n)) * (1.6 * fresnel) * mix(0.2, 1.0, smoothstep(0.15, 0.5, ao));
     float shadow = mix(0.4, 1.0, key_shadow(in_world, n));
     for (int k = 0; k < 2; k++) {
-        mirror += view.radiance[k].rgb * specular(n, v, view.light[k].xyz, 0.11, 0.03) * (k == 0 ? shadow : 0.6);
+        mirror += view.radiance[k].rgb * specular(n, v, view.light[k].xyz, 0.15, 0.03) * (k == 0 ? shadow : 0.5);
     }
-    vec3 shown = tone(mirror * 1.6);
+    vec3 shown = tone(mirror * 2.2);
     float cover = max(max(shown.r, shown.g), max(shown.b, 0.0005));
     out_color = vec4(shown / cover, cover);
 }

@@ -23,10 +23,10 @@ void main()
         float shadow = k == 0 ? mix(0.35, 1.0, key_shadow(in_world, n)) : 1.0;
         vec3 gathered = normalize(n - 0.55 * iris * l + 0.55 * iris * dot(n, l) * n);
         float ndl = mix(dot(n, l), 0.6 * dot(gathered, l) + 0.4, iris);
-        diffuse += view.radiance[k].rgb * wrapped(ndl, vec3(0.45, 0.36, 0.33)) * shadow;
+        diffuse += view.radiance[k].rgb * wrapped(vec3(ndl), vec3(0.45, 0.36, 0.33)) * shadow;
         shine += view.radiance[k].rgb * specular(n, v, l, 0.22, 0.025) * shadow * (1.0 - iris);
     }
     diffuse += ambient(n);
-    vec3 lids = pow(vec3(ao), vec3(0.75, 0.90, 0.95)) * 0.85 + 0.15 * ao;
+    vec3 lids = pow(vec3(ao), vec3(1.05, 1.25, 1.3)) * 0.92;
     out_color = vec4(tone(albedo * diffuse * lids + shine * ao * 2.0), 1.0);
 }

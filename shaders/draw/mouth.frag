@@ -1,9 +1,10 @@
-// Teeth, gums and tongue: wet, and darker the deeper in the mouth.
+// Teeth, gums and tongue: wet, darker the deeper in the mouth and the nearer the lips are to each other.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "draw_graphics.glsl"
 #include "draw_light.glsl"
 
+layout(scalar, binding = RIS_DRAW_BIND_AT) readonly buffer At { vec4 at[]; };
 layout(location = 0) in vec3 in_world;
 layout(location = 1) in vec3 in_normal;
 layout(location = 2) in vec2 in_uv;
@@ -15,14 +16,16 @@ void main()
     vec3 n = normalize(in_normal), v = normalize(view.eye.xyz - in_world);
     vec3 albedo = base_color(in_uv);
     float depth = max(0.0, view.mouth.x - in_rest.z) / view.mouth.y;
-    float open = exp(-1.6 * depth) * 0.9 + 0.03;
+    float gap = distance(at[view.lip[0]].xyz, at[view.lip[1]].xyz);
+    float parted = view.lip[0] == view.lip[1] ? 1.0 : clamp(0.06 + (gap - 1.0) / 14.0, 0.06, 1.0);
+    float open = (exp(-1.5 * depth) + 0.03) * parted;
     vec3 diffuse = vec3(0.0), shine = vec3(0.0);
     for (int k = 0; k < 2; k++) {
         vec3 l = view.light[k].xyz;
-        float shadow = k == 0 ? mix(0.25, 1.0, key_shadow(in_world, n)) : 0.8;
-        diffuse += view.radiance[k].rgb * wrapped(dot(n, l), vec3(0.35, 0.25, 0.22)) * shadow;
+        float shadow = k == 0 ? mix(0.35, 1.0, key_shadow(in_world, n)) : 0.9;
+        diffuse += view.radiance[k].rgb * wrapped(vec3(dot(n, l)), vec3(0.35, 0.25, 0.22)) * shadow;
         shine += view.radiance[k].rgb * specular(n, v, l, 0.24, 0.04) * shadow;
     }
-    diffuse += ambient(n) * 0.7;
+    diffuse += ambient(n);
     out_color = vec4(tone(albedo * diffuse * pow(vec3(open), vec3(0.85, 1.05, 1.05)) + shine * open * 0.8), 1.0);
 }

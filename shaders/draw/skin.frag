@@ -17,34 +17,34 @@ void main()
     vec3 albedo = base_color(in_uv);
     float ao = clamp(in_rest.w, 0.0, 1.0);
 
-    // pores, in the skin's own frame; they fade where a pixel covers more than a pore
-    float footprint = length(fwidth(in_rest.xyz));
-    vec4 coarse = noise3(in_rest.xyz * 0.45), fine = noise3(in_rest.xyz * 1.35);
-    float keep = clamp(1.4 - footprint * 0.9, 0.0, 1.0);
-    vec3 bump = coarse.yzw * 0.45 * 0.045 + fine.yzw * 1.35 * 0.035 * keep;
-    vec3 n = normalize(smooth_n - (bump - smooth_n * dot(bump, smooth_n)));
-    vec3 soft = normalize(mix(smooth_n, n, 0.35));
+    // relief of the detail texture, by differences over the pixel (Mikkelsen 2010); mip levels flatten it far away
+    vec3 detail = texture(detail_texture, in_uv).rgb;
+    vec3 along_x = dFdx(in_world), along_y = dFdy(in_world);
+    vec3 across_x = cross(along_y, smooth_n), across_y = cross(smooth_n, along_x);
+    float area = dot(along_x, across_x);
+    vec3 slope = object.pivot.w * sign(area) * (dFdx(detail.r) * across_x + dFdy(detail.r) * across_y);
+    vec3 n = normalize(abs(area) * smooth_n - slope);
+    vec3 soft = normalize(mix(smooth_n, n, 0.4));
 
-    float rough = 0.50 + 0.06 * coarse.x - 0.05 * fine.x * keep;
-    float oil = 0.75 + 0.25 * coarse.x;
-    float gloss = ao * ao * oil;
+    float rough = 0.72 - 0.45 * detail.g;
+    float thin = detail.b;
+    float gloss = ao * ao;
 
-    const vec3 spread = vec3(0.42, 0.16, 0.09);
-    vec3 diffuse = vec3(0.0), shine = vec3(0.0);
+    vec3 spread = vec3(0.38, 0.14, 0.08) + thin * vec3(0.45, 0.12, 0.06);
+    // creases keep some red: light scatters in from their walls
+    vec3 open = ao * (vec3(1.35, 0.95, 0.85) - ao * vec3(0.35, -0.05, -0.15));
+    float lit = key_shadow(in_world, smooth_n);
+    vec3 diffuse = ambient(soft) * open, shine = vec3(0.0);
     for (int k = 0; k < 3; k++) {
         vec3 l = view.light[k].xyz;
-        float shadow = k == 0 ? key_shadow(in_world, smooth_n) : ao;
-        // the shadow's edge is red too: skin lets red light through
-        vec3 through = pow(vec3(shadow), vec3(0.62, 1.05, 1.25));
-        vec3 lambert = vec3(wrapped(dot(soft, l), spread).r, wrapped(dot(n, l), spread).gb);
-        diffuse += view.radiance[k].rgb * lambert * through;
-        float lobes = 0.80 * specular(n, v, l, rough, 0.028) + 0.28 * specular(n, v, l, rough * 0.62, 0.028);
-        shine += view.radiance[k].rgb * lobes * shadow * gloss * 3.14159265;
+        // the shadow's edge is red too
+        vec3 through = k == 0 ? lit * (vec3(1.5, 0.95, 0.8) - lit * vec3(0.5, -0.05, -0.2)) : open;
+        float bare = dot(n, l), deep = dot(soft, l);
+        diffuse += view.radiance[k].rgb * wrapped(deep * vec3(1.0, 0.4, 0.0) + bare * vec3(0.0, 0.6, 1.0), spread) * through;
+        shine += view.radiance[k].rgb * (specular2(n, v, l, rough, 0.028, 0.25, 0.6) * (k == 0 ? lit : ao) * gloss);
     }
-    vec3 bleed = pow(vec3(ao), vec3(0.75, 1.05, 1.15));
-    diffuse += ambient(soft) * bleed;
     // soft reflection of the room at grazing angles
-    float grazing = pow(1.0 - clamp(dot(n, v), 0.0, 1.0), 5.0);
-    shine += ambient(reflect(-v, n)) * (0.018 + 0.22 * grazing) * ao * ao;
-    out_color = vec4(tone(albedo * diffuse + shine), 1.0);
+    float grazing = fifth(1.0 - clamp(dot(n, v), 0.0, 1.0));
+    vec3 room = ambient(reflect(-v, n)) * ((0.014 + 0.16 * grazing) * gloss);
+    out_color = vec4(melt(tone(albedo * diffuse + 1.7 * shine + room), in_rest.y), 1.0);
 }

@@ -38,9 +38,10 @@
 #define RIS_DRAW_BIND_FACING 2 /* vec4 (surface vertices): normal */
 #define RIS_DRAW_BIND_REST 3   /* vec4 (surface vertices): position at rest, w = visible share of the surroundings */
 #define RIS_DRAW_BIND_CORNER 4 /* ris_draw_corner */
-#define RIS_DRAW_BIND_COLOR 5  /* texture */
-#define RIS_DRAW_BIND_SHADOW 6 /* depth picture from the key light */
-#define RIS_DRAW_BIND_GRAPHICS_COUNT 7
+#define RIS_DRAW_BIND_COLOR 5  /* texture, sRGB */
+#define RIS_DRAW_BIND_DETAIL 6 /* texture beside it, linear: R height (0.5 = mean), G oil, B thinness */
+#define RIS_DRAW_BIND_SHADOW 7 /* depth picture from the key light */
+#define RIS_DRAW_BIND_GRAPHICS_COUNT 8
 
 /* One node's share of a surface vertex. */
 RIS_DRAW_STRUCT(ris_draw_term) {
@@ -75,7 +76,9 @@ RIS_DRAW_STRUCT(ris_draw_view) {
     ris_draw_v4 light[3];     /* key, fill, rim: unit direction towards the light, w = half angle of the lamp, radians */
     ris_draw_v4 radiance[3];  /* linear RGB, w unused */
     ris_draw_v4 sky, ground;  /* ambient from above and below, linear RGB */
-    ris_draw_v4 mouth;        /* x = depth of the teeth's front at rest, mm; y = fall-off, mm; z, w unused */
+    ris_draw_v4 mouth;        /* x = depth of the teeth's front at rest, mm; y = fall-off, mm */
+    ris_draw_uint lip[2];     /* surface vertices in the middle of the upper and lower lip's edge; equal = none */
+    ris_draw_float fade[2];   /* the bust melts into the backdrop between these heights at rest, mm; equal = never */
     ris_draw_v4 size;         /* width, height in pixels, shadow texels per side, mm per shadow texel */
 } RIS_DRAW_STRUCT_END(ris_draw_view);
 
@@ -83,7 +86,7 @@ RIS_DRAW_STRUCT(ris_draw_view) {
 RIS_DRAW_STRUCT(ris_draw_object) {
     ris_draw_v4 place[3]; /* rows: bone, then head pose */
     ris_draw_v4 tint;     /* linear RGB where there is no texture; w = 1 with a texture */
-    ris_draw_v4 pivot;    /* centre of an eye at rest, mm; w unused */
+    ris_draw_v4 pivot;    /* centre of an eye at rest, mm; w = relief of the detail texture, mm */
 } RIS_DRAW_STRUCT_END(ris_draw_object);
 
 #ifdef RIS_GLSL
