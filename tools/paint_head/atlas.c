@@ -32,7 +32,7 @@ static float brow_at(const ris_paint_surface *surface, ris_vec3 p)
         const ris_vec3 d = vec3_sub(p, surface->brow[i]);
         nearest = fminf(nearest, vec3_dot(d, d));
     }
-    return ris_paint_step(4.5f, 0.8f, sqrtf(nearest));
+    return ris_paint_step(2.9f, 0.3f, sqrtf(nearest));
 }
 
 static void paint_texel(const ris_paint_surface *surface, uint32_t triangle, const float w[3], uint8_t *color,

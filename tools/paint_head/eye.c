@@ -15,8 +15,8 @@ static void mix3(float *a, const float *b, float t)
 /* r: 0 at the pupil's rim .. 1 at the limbus; turn: direction, radians. */
 static void paint_iris(float r, float turn, float color[3])
 {
-    const float outer[3] = {0.105f, 0.135f, 0.120f}, inner[3] = {0.190f, 0.105f, 0.040f},
-                light[3] = {0.34f, 0.33f, 0.24f};
+    const float outer[3] = {0.080f, 0.100f, 0.097f}, inner[3] = {0.160f, 0.088f, 0.034f},
+                light[3] = {0.27f, 0.265f, 0.20f};
     const float dark[3] = {0.030f, 0.030f, 0.028f};
     const float cx = cosf(turn), cy = sinf(turn);
     const float wave = ris_paint_fbm(vec3(cx * 5, cy * 5, r * 1.5f), 3, 211);
@@ -40,7 +40,7 @@ static void paint_iris(float r, float turn, float color[3])
 /* angle: from the corneal pole, radians. */
 static void paint_sclera(float angle, float edge, float turn, ris_vec3 direction, float color[3])
 {
-    const float white[3] = {0.70f, 0.655f, 0.60f}, warm[3] = {0.60f, 0.475f, 0.395f},
+    const float white[3] = {0.60f, 0.555f, 0.505f}, warm[3] = {0.52f, 0.41f, 0.335f},
                 red[3] = {0.46f, 0.105f, 0.075f};
     const float grey[3] = {0.42f, 0.425f, 0.43f};
     mix3(color, white, 1);

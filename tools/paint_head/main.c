@@ -39,7 +39,7 @@ static bool read_mm(const char *text, float *out)
 
 static bool read_options(int argc, char **argv, options *out)
 {
-    *out = (options){.size = 2048, .eye_size = 1024, .eye = {14.65f, 5.9f, 1.9f}};
+    *out = (options){.size = 2048, .eye_size = 1024, .eye = {14.95f, 5.9f, 2.1f}};
     for (int i = 1; i < argc; i++) {
         const char *name = argv[i];
         if (strcmp(name, "--help") == 0)

@@ -1,4 +1,5 @@
-/* Teeth, gums and tongue. The teeth run along u; v goes from the gum line (0) to the cutting edge (1). */
+/* Teeth, gums and tongue. Teeth and gums run along u from the subject's right to the left; the teeth's v goes from the gum
+ * line (0) to the cutting edge (1). */
 #include "paint.h"
 
 #include <math.h>
@@ -15,52 +16,71 @@ static void put(ris_paint_image *image, uint32_t i, const float color[3])
     image->covered[i] = 1;
 }
 
+/* Sixteen crowns side by side, eight a side of u = 0.5. */
 ris_result ris_paint_teeth_image(uint32_t size, ris_paint_image *out, ris_error *err)
 {
     const ris_result result = ris_paint_image_init(out, size, size, err);
     if (result)
         return result;
-    const float ivory[3] = {0.60f, 0.535f, 0.415f}, root[3] = {0.52f, 0.40f, 0.25f},
-                edge[3] = {0.47f, 0.475f, 0.45f};
+    const float ivory[3] = {0.50f, 0.445f, 0.345f}, root[3] = {0.42f, 0.325f, 0.205f},
+                edge[3] = {0.37f, 0.38f, 0.365f};
     for (uint32_t i = 0; i < size * size; i++) {
         const ris_vec3 at = texel_at(i, size);
-        const float cloud = ris_paint_fbm(vec3(at.x * 20, at.y * 4, 0), 3, 307);
-        const float stripe = ris_paint_fbm(vec3(at.x * 120, at.y * 3, 0), 2, 311);
-        const float low = ris_paint_step(0.45f, 0.0f, at.y + 0.1f * cloud),
-                    high = ris_paint_step(0.78f, 1.0f, at.y + 0.08f * cloud);
+        const float slot = at.x * 16, middle = fabsf(at.x - 0.5f) * 16; /* crowns from the midline */
+        const int32_t tooth = (int32_t)floorf(slot);
+        const float own = (float)(ris_paint_hash(tooth, 0, 0, 305) & 255u) / 255.0f - 0.5f;
+        const float canine = middle > 2 && middle < 3 ? 1 : 0;
+        const float cloud = ris_paint_fbm(vec3(at.x * 28, at.y * 4, 0), 3, 307);
+        const float stripe = ris_paint_fbm(vec3(at.x * 130, at.y * 3, 0), 2, 311);
+        const float side = fabsf(slot - (float)tooth - 0.5f) * 2; /* 1 where two crowns meet */
+        const float low = ris_paint_step(0.5f, 0.0f, at.y + 0.1f * cloud) + 0.30f * canine + 0.35f * own;
+        const float high = ris_paint_step(0.76f, 1.0f, at.y + 0.06f * cloud) * (middle < 3 ? 1 : 0.3f);
+        const float deep =
+            1 - 0.45f * ris_paint_step(2.0f, 7.0f, middle); /* back teeth lie in the shade of the cheeks */
+        const float gap =
+            1 - 0.45f * ris_paint_step(0.78f, 1.0f, side) - 0.35f * ris_paint_step(0.10f, 0.0f, at.y);
         float color[3];
         for (int k = 0; k < 3; k++) {
-            color[k] = ris_paint_mix(ris_paint_mix(ivory[k], root[k], 0.75f * low), edge[k], 0.6f * high);
-            color[k] *= 1 + 0.04f * cloud + 0.03f * stripe;
+            color[k] = ris_paint_mix(ivory[k], root[k], ris_paint_clamp(0.8f * low, 0, 1));
+            color[k] = ris_paint_mix(color[k], edge[k], 0.6f * high);
+            color[k] *= (1 + 0.04f * cloud + 0.03f * stripe) * deep * gap;
         }
         put(out, i, color);
     }
     return RIS_OK;
 }
 
+/* v: outer fold (0), margin at the teeth (0.5), inside (1). */
 ris_result ris_paint_gum_image(uint32_t size, ris_paint_image *out, ris_error *err)
 {
     const ris_result result = ris_paint_image_init(out, size, size, err);
     if (result)
         return result;
-    const float pink[3] = {0.43f, 0.165f, 0.145f}, pale[3] = {0.53f, 0.265f, 0.225f},
-                red[3] = {0.33f, 0.085f, 0.075f};
+    const float pink[3] = {0.39f, 0.150f, 0.130f}, pale[3] = {0.47f, 0.235f, 0.200f},
+                red[3] = {0.28f, 0.072f, 0.064f};
     for (uint32_t i = 0; i < size * size; i++) {
         const ris_vec3 at = texel_at(i, size);
-        const float cloud = ris_paint_fbm(vec3(at.x * 14, at.y * 6, 1), 3, 313);
-        const float stipple = ris_paint_cells(vec3(at.x * 160, at.y * 60, 1), 317).near;
-        const float vessel = 1 - 6 * fabsf(ris_paint_fbm(vec3(at.x * 18, at.y * 8, 2), 2, 331));
+        const float cloud = ris_paint_fbm(vec3(at.x * 16, at.y * 6, 1), 3, 313);
+        const float stipple = ris_paint_cells(vec3(at.x * 110, at.y * 34, 1), 317).near;
+        const float vessel = 1 - 6 * fabsf(ris_paint_fbm(vec3(at.x * 20, at.y * 7, 2), 2, 331));
+        const float margin = fabsf(at.y - 0.5f); /* firm pale gum by the teeth, red moving lining beyond */
+        const float loose = ris_paint_step(0.16f, 0.40f, margin);
+        const float deep = 1 - 0.45f * ris_paint_step(0.2f, 0.47f, fabsf(at.x - 0.5f));
         float color[3];
         for (int k = 0; k < 3; k++) {
-            color[k] = ris_paint_mix(pink[k], pale[k], ris_paint_clamp(0.4f + 0.7f * cloud, 0, 1));
-            color[k] = ris_paint_mix(color[k], red[k], 0.4f * ris_paint_clamp(vessel, 0, 1));
-            color[k] *= 0.95f + 0.08f * stipple;
+            color[k] =
+                ris_paint_mix(pink[k], pale[k], ris_paint_clamp(0.45f + 0.6f * cloud, 0, 1) * (1 - loose));
+            color[k] = ris_paint_mix(color[k], red[k],
+                                     0.45f * loose + 0.35f * loose * ris_paint_clamp(vessel, 0, 1));
+            color[k] = ris_paint_mix(color[k], red[k], 0.45f * ris_paint_step(0.05f, 0.0f, margin));
+            color[k] *= (0.95f + 0.08f * stipple * (1 - loose)) * deep;
         }
         put(out, i, color);
     }
     return RIS_OK;
 }
 
+/* Seen from above: u across, v from the root (0) to the tip (1). */
 ris_result ris_paint_tongue_image(uint32_t size, ris_paint_image *out, ris_error *err)
 {
     const ris_result result = ris_paint_image_init(out, size, size, err);
@@ -87,7 +107,7 @@ ris_result ris_paint_tongue_image(uint32_t size, ris_paint_image *out, ris_error
             color[k] = ris_paint_mix(
                 color[k], deep[k],
                 (mushroom.id & 3u) == 0 ? 0.35f * ris_paint_step(0.16f, 0.05f, mushroom.near) : 0);
-            color[k] *= 1 + 0.08f * cloud;
+            color[k] *= (1 + 0.08f * cloud) * ris_paint_mix(0.45f, 1, ris_paint_step(0.1f, 0.75f, at.y));
         }
         put(out, i, color);
     }

@@ -187,14 +187,14 @@ static void bake_vertex(ris_paint_surface *surface, const ris_paint_tree *all, c
                         uint32_t i)
 {
     enum { SKY_RAYS = 160, DEPTH_RAYS = 24 };
-    const float reach = 70.0f;
+    const float reach = 50.0f;
     const ris_vec3 p = surface->mesh->position[i], n = surface->normal[i];
     const ris_vec3 above = vec3_add(p, vec3_scale(n, 0.25f)), below = vec3_sub(p, vec3_scale(n, 0.25f));
     float open = 0, thin = 0;
     for (uint32_t k = 0; k < SKY_RAYS; k++) {
         /* far hits darken less: light reaches there from elsewhere */
         const float d = ris_paint_tree_cast(all, above, spiral(n, k, SKY_RAYS, 0.98f), reach);
-        open += sqrtf(d / reach);
+        open += powf(d / reach, 0.75f);
     }
     for (uint32_t k = 0; k < DEPTH_RAYS; k++) {
         const float d =

@@ -133,7 +133,7 @@ typedef struct ris_paint_zones {
     float scalp;                  /* stubble density within the hairline */
     float lip, lip_roll;          /* vermilion; the pale rim around it */
     float inner_mouth, inner_lip; /* behind the lip seam; the part of the lips hidden when closed */
-    float lid, rim, under_eye, crease, socket, caruncle;
+    float lid, rim, lash, crease, under_eye, socket, caruncle;
     float ear, nose, ala, cheek, forehead, chin, lower_face, neck, fold, lip_corner, nostril;
 } ris_paint_zones;
 ris_paint_zones ris_paint_find_zones(const ris_paint_surface *surface, const ris_paint_site *site);

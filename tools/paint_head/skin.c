@@ -22,8 +22,8 @@ static ris_vec3 at_size(ris_vec3 p, float size_mm)
 /* Base tone by region of the face: yellow forehead, red centre, grey lower third. */
 static void tone(const ris_paint_zones *z, pigment *ink)
 {
-    ink->melanin = 0.40f + 0.05f * z->forehead + 0.03f * z->lower_face + 0.04f * z->neck;
-    ink->blood = 0.24f - 0.05f * z->forehead - 0.04f * z->neck + 0.02f * z->scalp;
+    ink->melanin = 0.47f + 0.05f * z->forehead + 0.03f * z->lower_face + 0.04f * z->neck;
+    ink->blood = 0.34f - 0.05f * z->forehead - 0.04f * z->neck + 0.02f * z->scalp;
     ink->blood += 0.19f * z->nose + 0.15f * z->ala + 0.17f * z->cheek + 0.22f * z->ear + 0.08f * z->chin;
     ink->blood +=
         0.10f * z->lid + 0.22f * z->rim + 0.09f * z->fold + 0.14f * z->lip_corner + 0.07f * z->under_eye;
@@ -31,8 +31,10 @@ static void tone(const ris_paint_zones *z, pigment *ink)
         0.10f * z->lid + 0.10f * z->under_eye + 0.05f * z->fold + 0.10f * z->lip_corner + 0.05f * z->rim;
     ink->cold = 0.035f * z->lower_face + 0.07f * z->under_eye;
     ink->shade = 0.03f * z->under_eye - 0.05f * z->lip_roll;
+    ink->shade += 0.30f * z->lash + 0.10f * z->crease;
+    ink->melanin += 0.15f * z->lash + 0.10f * z->crease;
     ink->blood += 0.45f * z->caruncle + 0.5f * z->socket + 0.9f * z->nostril;
-    ink->shade += 0.5f * z->nostril;
+    ink->shade += 2.2f * z->nostril;
 }
 
 /* Unevenness at every scale: flush patches, mottling, tiny vessels, freckles, a few moles. */
@@ -43,14 +45,16 @@ static void mottle(const ris_paint_zones *z, ris_vec3 p, float s, pigment *ink)
     const float speck = ris_paint_fbm(at_size(p, 1.8f * s), 2, 41),
                 brown = ris_paint_fbm(at_size(p, 16 * s), 4, 43);
     const float central = fminf(1, z->cheek + z->nose + z->ala + 0.5f * z->chin);
-    ink->blood += (0.06f + 0.03f * central) * flush + (0.07f + 0.04f * central) * patch + 0.035f * speck;
-    ink->melanin += 0.07f * brown + 0.03f * speck;
+    const float even = 1 - 0.65f * z->scalp; /* hair hides the mottling */
+    ink->blood +=
+        even * ((0.09f + 0.04f * central) * flush + (0.10f + 0.06f * central) * patch) + 0.035f * speck;
+    ink->melanin += even * (0.11f * brown + 0.04f * speck);
     const float vessel = 1 - fabsf(ris_paint_fbm(at_size(p, 4 * s), 2, 47)) * 7;
     ink->blood += 0.10f * fmaxf(0, vessel) * (0.25f * z->cheek + 0.8f * z->ala);
     const ris_paint_cell freckle = ris_paint_cells(at_size(p, 4.2f * s), 53);
     const float rare = (float)(freckle.id & 255u) / 255.0f,
                 size = 0.10f + 0.12f * (float)(freckle.id >> 8 & 255u) / 255.0f;
-    const float sunny = 0.06f + 0.24f * fminf(1, z->cheek + z->nose) + 0.05f * z->forehead;
+    const float sunny = 0.10f + 0.34f * fminf(1, z->cheek + z->nose) + 0.10f * z->forehead;
     if (rare < sunny && z->lip < 0.1f)
         ink->melanin +=
             0.22f * ris_paint_step(size, 0.3f * size, freckle.near) * (0.4f + 0.6f * (1 - rare / sunny));
@@ -65,11 +69,11 @@ static void lips(const ris_paint_zones *z, ris_vec3 p, float s, pigment *ink)
 {
     const float lines = ris_paint_fbm(vec3(p.x / (0.75f * s), p.y / (7 * s), p.z / (9 * s)), 2, 61);
     const float patch = ris_paint_fbm(at_size(p, 4 * s), 2, 67);
-    const float red = 0.42f + 0.10f * patch + 0.12f * lines + 0.35f * z->inner_lip;
+    const float red = 0.70f + 0.10f * patch + 0.12f * lines + 0.35f * z->inner_lip;
     ink->blood = ris_paint_mix(ink->blood, 0.30f + red, z->lip);
-    ink->melanin = ris_paint_mix(ink->melanin, 0.44f, z->lip);
+    ink->melanin = ris_paint_mix(ink->melanin, 0.58f, z->lip);
     ink->cold = ris_paint_mix(ink->cold, 0.08f, z->lip);
-    ink->shade += z->lip * (0.09f + 0.05f * lines) + 0.05f * z->lip_corner;
+    ink->shade += z->lip * (0.20f + 0.06f * lines) + 0.05f * z->lip_corner;
     const float deep = z->inner_mouth;
     ink->blood = ris_paint_mix(ink->blood, 1.25f + 0.15f * patch, deep);
     ink->melanin = ris_paint_mix(ink->melanin, 0.25f, deep);
@@ -82,16 +86,15 @@ static void stubble(const ris_paint_zones *z, ris_vec3 p, float brow, pigment *i
     const ris_paint_cell hair = ris_paint_cells(at_size(p, 0.95f), 71);
     const float chance = (float)(hair.id & 1023u) / 1023.0f;
     const float thick =
-        0.80f + 0.30f * ris_paint_fbm(at_size(p, 20), 3, 73) + 0.12f * ris_paint_fbm(at_size(p, 2.5f), 2, 74);
+        0.92f + 0.12f * ris_paint_fbm(at_size(p, 20), 3, 73) + 0.12f * ris_paint_fbm(at_size(p, 2.5f), 2, 74);
     const float density = z->scalp * thick;
     const float dot = chance < density ? ris_paint_step(0.62f, 0.15f, hair.near) : 0;
-    ink->shade += 0.42f * density + 0.24f * dot;
-    ink->cold += 0.24f * density;
+    ink->shade += 1.0f * density + 0.34f * dot;
+    ink->cold += 0.33f * density;
     ink->melanin += 0.04f * density;
     ink->blood -= 0.06f * density;
-    ink->shade += 0.42f * brow;
-    ink->melanin += 0.15f * brow;
-    ink->cold += 0.06f * brow;
+    ink->shade += 0.34f * brow;
+    ink->melanin += 0.30f * brow;
 }
 
 /* Fine relief, 0 = mean: pores, the criss-cross of thin skin, lines of forehead and lips, stubble. mm-ish, about -1..1 */
@@ -119,25 +122,26 @@ static float relief(const ris_paint_zones *z, ris_vec3 p, float s, float *pore)
 
 static float oiliness(const ris_paint_zones *z, ris_vec3 p, float s)
 {
-    float oil = 0.40f + 0.05f * ris_paint_fbm(at_size(p, 9 * s), 3, 107) +
+    float oil = 0.35f + 0.05f * ris_paint_fbm(at_size(p, 9 * s), 3, 107) +
                 0.04f * ris_paint_fbm(at_size(p, 1.6f), 2, 109);
     oil += 0.14f * z->nose + 0.10f * z->ala + 0.08f * z->forehead + 0.06f * z->chin - 0.05f * z->cheek -
            0.05f * z->neck;
-    oil -= 0.10f * z->scalp;
+    oil -= 0.12f * z->scalp;
     oil = ris_paint_mix(oil, 0.62f, z->lip);
     oil = ris_paint_mix(oil, 0.85f, fmaxf(z->inner_lip, fmaxf(z->inner_mouth, z->socket)));
-    return ris_paint_mix(oil, 0.8f, fmaxf(z->caruncle, 0.8f * z->rim));
+    oil = ris_paint_mix(oil, 0.8f, fmaxf(z->caruncle, 0.8f * z->rim));
+    return oil * (1 - z->nostril);
 }
 
 /* Share of light left in hollows; the loss is less in red, because light that gets there came off skin. */
 static void shade(const ris_paint_site *site, const ris_paint_zones *z, float color[3])
 {
-    float open = ris_paint_clamp(site->occlusion * 1.04f, 0, 1);
+    float open = ris_paint_clamp(site->occlusion * 1.06f, 0, 1);
     /* what is hidden at rest but shows when the mouth opens keeps its light */
     const float kept = fmaxf(z->inner_mouth, fmaxf(z->inner_lip, z->socket));
     open = fmaxf(open, ris_paint_mix(0.12f, 0.72f, kept));
     const float hollow = ris_paint_clamp(site->curvature, -0.25f, 0.25f) * (1 - kept) * (1 - z->ear);
-    const float power[3] = {0.42f, 0.58f, 0.62f};
+    const float power[3] = {0.40f, 0.56f, 0.60f};
     for (int k = 0; k < 3; k++)
         color[k] *= powf(open, power[k]) * (1 - 0.35f * fmaxf(0, hollow) - 0.12f * fminf(0, hollow));
 }

@@ -78,8 +78,11 @@ static void find_lids(const ris_paint_surface *surface, const ris_paint_site *si
     const ris_paint_landmarks *at = &surface->at;
     const float s = at->scale, ring = site->lid, above = site->p.y - at->eye[side].y;
     zones->socket = site->shell == RIS_SHELL_SOCKET ? 1 : 0;
-    zones->rim = ris_paint_step(3.2f, 1.2f, ring);
-    zones->lid = ris_paint_step(11, 6, ring) * ris_paint_step(0, 3 * s, above);
+    zones->rim = ris_paint_step(4.4f, 3.3f, ring);
+    const float upper = ris_paint_step(0, 2.5f * s, above);
+    zones->lash = (0.45f + 0.55f * upper) * expf(-(ring - 4.5f) * (ring - 4.5f) / 0.5f);
+    zones->crease = upper * expf(-(ring - 7.2f) * (ring - 7.2f) / 0.8f);
+    zones->lid = ris_paint_step(12, 8, ring) * upper;
     const ris_vec3 bag = vec3_add(at->eye[side], vec3((side ? -1.0f : 1.0f) * -4 * s, -12 * s, 0));
     const float dx = (site->p.x - bag.x) / (17 * s), dy = (site->p.y - bag.y) / (8 * s);
     zones->under_eye =
@@ -113,7 +116,9 @@ ris_paint_zones ris_paint_find_zones(const ris_paint_surface *surface, const ris
     const ris_vec3 wing = vec3_add(at->ala[side], vec3((side ? -3.0f : 3.0f) * s, 2 * s, -2 * s));
     const ris_vec3 end = vec3_add(at->lip_corner[side], vec3((side ? -9.0f : 9.0f) * s, 3 * s, 0));
     zones.fold = ris_paint_capsule(p, wing, end, 4.5f * s);
-    zones.nostril = ris_paint_step(0.55f, 0.3f, site->occlusion) *
-                    ris_paint_blob(p, vec3_add(at->nose_tip, vec3(0, -6 * s, -12 * s)), 17 * s);
+    /* the mesh has only dents for nostrils: paint makes them deep */
+    const ris_vec3 nare = vec3_add(at->nose_tip, vec3((side ? -8.8f : 8.8f) * s, -3.8f * s, -11.0f * s));
+    zones.nostril = ris_paint_step(0.84f, 0.64f, site->occlusion) *
+                    ris_paint_step(8.0f * s, 4.5f * s, ris_paint_length(vec3_sub(p, nare)));
     return zones;
 }
