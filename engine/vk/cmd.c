@@ -101,10 +101,11 @@ fail:
 ris_result ris_vk_cmd_wait(ris_device *vk, ris_vk_cmd *cmd, ris_error *err)
 {
     ris_result result = RIS_OK;
-    VkResult waited = ris__vk_gate(vk);
+    VkResult waited;
     if (!cmd->pending) {
         return RIS_OK;
     }
+    waited = ris__vk_gate(vk);
     if (waited == VK_SUCCESS) {
         waited = vkWaitForFences(vk->handle, 1, &cmd->fence, VK_TRUE, RIS_VK_TIMEOUT_NS);
     }

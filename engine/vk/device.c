@@ -206,7 +206,7 @@ static ris_result choose(ris_device *vk, const ris_device_def *def, ris_error *e
     ris_result result;
     RIS_TRY(enumerate(vk, &physical, &count, err));
     if (count == 0) {
-        result = ris_fail(err, RIS_ERROR_DEVICE, "no Vulkan device found (is a driver such as mesa-vulkan-drivers installed?)");
+        result = ris_fail(err, RIS_ERROR_DEVICE, "there is no Vulkan device on this machine (Debian: apt-get install mesa-vulkan-drivers)");
         goto fail;
     }
     info = calloc(count, sizeof *info);

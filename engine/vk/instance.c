@@ -85,6 +85,19 @@ fail:
     return result;
 }
 
+static ris_result create(ris_device *vk, const VkInstanceCreateInfo *info, ris_error *err)
+{
+    VkResult created = ris__vk_gate(vk);
+    if (created == VK_SUCCESS) {
+        created = vkCreateInstance(info, NULL, &vk->instance);
+    }
+    if (created == VK_ERROR_INCOMPATIBLE_DRIVER) { /* the loader found no driver at all */
+        return ris_fail(err, RIS_ERROR_DEVICE,
+                        "there is no Vulkan driver on this machine (Debian: apt-get install mesa-vulkan-drivers)");
+    }
+    return created == VK_SUCCESS ? RIS_OK : ris__vk_fail(vk, err, created, "vkCreateInstance", __FILE__, __LINE__);
+}
+
 ris_result ris__vk_instance_create(ris_device *vk, const char *const *extensions, uint32_t extension_count, ris_error *err)
 {
     ris_result result = RIS_OK;
@@ -130,7 +143,7 @@ ris_result ris__vk_instance_create(ris_device *vk, const char *const *extensions
     }
     info.enabledExtensionCount = count;
     info.ppEnabledExtensionNames = names;
-    RIS_VK(vkCreateInstance(&info, NULL, &vk->instance));
+    RIS_TRY(create(vk, &info, err));
     if (vk->validation && vk->debug_utils) {
         messenger.pNext = NULL;
         RIS_TRY(create_messenger(vk, &messenger, err));

@@ -1,14 +1,10 @@
 /* Every Vulkan call of a small simulation fails once: from opening the device to the last read, n = 0, 1, 2 ... until nothing
  * fails any more. Each time the result must be an error of the right code with a sentence that names the call, and everything
  * must be freed (the sanitizer build checks that). */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
+#include "fault/fault.h"
+
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "gpu/gpu.h"
 #include "gpu/random_model.h"
@@ -97,29 +93,6 @@ static ris_result run_list(ris_error *err)
     ris_device_info info[4];
     uint32_t count;
     return ris_device_list(info, 4, &count, err);
-}
-
-static void fail_each_call(ris_result (*run)(ris_error *), VkResult what, ris_result expected, uint32_t at_least)
-{
-    int64_t n = 0;
-    for (;; n++) {
-        ris_error err = { 0 };
-        ris_result result;
-        ris__vk_fault_set(n, what);
-        result = run(&err);
-        if (ris__vk_fault_count() <= n) {
-            assert_int_equal(result, RIS_OK); /* n was beyond the last call */
-            break;
-        }
-        if (result != expected || err.code != expected || !strstr(err.text, ris_vk_result_name(what)) ||
-            !strstr(err.text, "vk")) {
-            fail_msg("call %lld failed with %s, but the result is %d, expected %d: \"%s\"", (long long)n,
-                     ris_vk_result_name(what), (int)result, (int)expected, err.text);
-        }
-    }
-    ris__vk_fault_set(-1, VK_SUCCESS);
-    print_message("%lld calls failed in turn\n", (long long)n);
-    assert_true(n >= (int64_t)at_least);
 }
 
 static void open_shared(void)

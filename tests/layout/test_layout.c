@@ -334,7 +334,8 @@ static void every_spoiled_word_is_found(void **state)
         assert_true(check_module(&m, stages[s].bindings));
         spoil(&m, stages[s].bindings, m.entry[m.local_size_id[0]].at + 3, 32, "group size");
         for (uint32_t at = 5; at < m.count; at += m.words[at] >> 16) {
-            const uint32_t op = m.words[at] & 0xffff, decoration = m.words[at + 2];
+            const uint32_t op = m.words[at] & 0xffff;
+            const uint32_t decoration = op == OP_DECORATE ? m.words[at + 2] : NONE;
             if (op == OP_DECORATE && (decoration == DECORATION_BINDING || decoration == DECORATION_SET)) {
                 spoil(&m, stages[s].bindings, at + 3, m.words[at + 3] + 1, "binding or set");
                 spoiled++;

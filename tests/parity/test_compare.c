@@ -14,7 +14,7 @@
 #include "sim/sim_impl.h"
 
 #define NODES 1234u
-#define TICKS 40u
+#define TICKS 12u
 
 static ris_device *vk;
 static ris_model *model;
