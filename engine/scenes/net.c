@@ -34,6 +34,14 @@ static ris_result allocate(ris_model *model, const ris_scene_net_def *def, ris_e
         {&model->node_area_mm2, n, sizeof *model->node_area_mm2},
         {&model->binding_start, n + 1, sizeof *model->binding_start},
         {&model->bone_anchor, n, sizeof *model->bone_anchor},
+        {&model->muscle, 0, sizeof *model->muscle},
+        {&model->fiber, 0, sizeof *model->fiber},
+        {&model->fiber_point, 0, sizeof *model->fiber_point},
+        {&model->segment, 0, sizeof *model->segment},
+        {&model->binding, 0, sizeof *model->binding},
+        {&model->attach, 0, sizeof *model->attach},
+        {&model->group, 0, sizeof *model->group},
+        {&model->group_point, 0, sizeof *model->group_point},
     };
     for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; ++k) {
         ris_result result = ris__model_alloc(arrays[k].field, arrays[k].count, arrays[k].size, "a net", err);
