@@ -62,6 +62,9 @@ static bool may_bind(const binder *b, uint32_t m, uint32_t node)
         return false;
     }
     const ris_muscle_def *def = b->bake->model->muscle[m].def;
+    if (def->kind == RIS_MUSCLE_LINEAR && def->lip_drag_power > 0.0f && b->lip[node]) {
+        return false; /* the pulled corner drags both lips along the oris; a direct pull on one of them would part them */
+    }
     return def->attach_auto || b->muscle_node[(size_t)m * b->bake->model->node_count + node];
 }
 
