@@ -128,7 +128,7 @@ static int start_program(ris_video *video, int in_fd, uint32_t fps)
                           "-video_size", size, "-framerate", rate, "-i", "pipe:0", "-vf",
                           "scale=out_color_matrix=bt709:out_range=tv", "-c:v", "libx264", "-preset", "veryfast", "-crf",
                           "18", "-pix_fmt", "yuv420p", "-colorspace", "bt709", "-color_primaries", "bt709",
-                          "-color_trc", "bt709", "-movflags", "+faststart", "-f", "mp4", target, NULL};
+                          "-color_trc", "bt709", "-f", "mp4", target, NULL};
     posix_spawn_file_actions_t actions;
     posix_spawnattr_t attributes;
     sigset_t none, defaults;
@@ -251,8 +251,12 @@ ris_result ris_video_close(ris_video *video, ris_error *err)
         result = ris_fail(err, RIS_ERROR_FAILED, "cannot write \"%s\": it has no frames", video->path);
     } else {
         int status = end_program(video);
+        char line[400];
+        first_line(video->log, line, sizeof line);
         if (status != 0) {
             result = fail_program(video, status, err);
+        } else if (line[0] != '\0') { /* it may end with 0 although its last write failed */
+            result = ris_fail(err, RIS_ERROR_FAILED, "cannot write \"%s\": the ffmpeg program says: %s", video->path, line);
         } else {
             result = ris__temporary_commit(video->temporary, video->path, err);
             video->temporary[0] = '\0';
