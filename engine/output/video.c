@@ -124,7 +124,7 @@ static int start_program(ris_video *video, int in_fd, uint32_t fps)
     snprintf(rate, sizeof rate, "%u", (unsigned)fps);
     char target[RIS_PATH_SIZE + 8];
     snprintf(target, sizeof target, "file:%s", video->temporary);
-    char *const argv[] = {"ffmpeg", "-nostdin", "-loglevel", "error", "-y", "-f", "rawvideo", "-pixel_format", "rgba",
+    char *const argv[] = {"ffmpeg", "-xerror", "-nostdin", "-loglevel", "error", "-y", "-f", "rawvideo", "-pixel_format", "rgba",
                           "-video_size", size, "-framerate", rate, "-i", "pipe:0", "-vf",
                           "scale=out_color_matrix=bt709:out_range=tv", "-c:v", "libx264", "-preset", "veryfast", "-crf",
                           "18", "-pix_fmt", "yuv420p", "-colorspace", "bt709", "-color_primaries", "bt709",
