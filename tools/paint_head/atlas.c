@@ -19,20 +19,22 @@ static ris_vec3 blend3(const ris_vec3 *field, const uint32_t *t, const float w[3
                     vec3_add(vec3_scale(field[t[1]], w[1]), vec3_scale(field[t[2]], w[2])));
 }
 
-/* 1 within the hairs of a brow, falling off over a few mm. */
+/* How densely the hairs of a brow stand over a place, 0..1: their shade, and the short hairs between them. */
 static float brow_at(const ris_paint_surface *surface, ris_vec3 p)
 {
-    const float reach = 7.0f;
-    if (p.x < surface->brow_low.x - reach || p.x > surface->brow_high.x + reach ||
-        p.y < surface->brow_low.y - reach || p.y > surface->brow_high.y + reach ||
-        p.z < surface->brow_low.z - reach || p.z > surface->brow_high.z + reach)
+    const float reach = 5.0f, kernel = 1.5f, half_dense = 24.0f;
+    const ris_vec3 low = surface->brow_low, high = surface->brow_high;
+    if (p.x < low.x - reach || p.x > high.x + reach || p.y < low.y - reach || p.y > high.y + reach ||
+        p.z < low.z - reach || p.z > high.z + reach)
         return 0;
-    float nearest = reach * reach;
+    float sum = 0;
     for (uint32_t i = 0; i < surface->brow_count; i++) {
         const ris_vec3 d = vec3_sub(p, surface->brow[i]);
-        nearest = fminf(nearest, vec3_dot(d, d));
+        const float square = vec3_dot(d, d);
+        if (square < reach * reach)
+            sum += expf(-square / (kernel * kernel));
     }
-    return ris_paint_step(2.9f, 0.3f, sqrtf(nearest));
+    return 1 - expf(-sum / half_dense);
 }
 
 static void paint_texel(const ris_paint_surface *surface, uint32_t triangle, const float w[3], uint8_t *color,

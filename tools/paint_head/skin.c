@@ -30,7 +30,7 @@ static void tone(const ris_paint_zones *z, pigment *ink)
     ink->melanin +=
         0.10f * z->lid + 0.10f * z->under_eye + 0.05f * z->fold + 0.10f * z->lip_corner + 0.05f * z->rim;
     ink->cold = 0.035f * z->lower_face + 0.07f * z->under_eye;
-    ink->shade = 0.03f * z->under_eye - 0.05f * z->lip_roll;
+    ink->shade = 0.03f * z->under_eye - 0.03f * z->lip_roll;
     ink->shade += 0.30f * z->lash + 0.10f * z->crease;
     ink->melanin += 0.15f * z->lash + 0.10f * z->crease;
     ink->blood += 0.45f * z->caruncle + 0.5f * z->socket + 0.9f * z->nostril;
@@ -69,11 +69,11 @@ static void lips(const ris_paint_zones *z, ris_vec3 p, float s, pigment *ink)
 {
     const float lines = ris_paint_fbm(vec3(p.x / (0.75f * s), p.y / (7 * s), p.z / (9 * s)), 2, 61);
     const float patch = ris_paint_fbm(at_size(p, 4 * s), 2, 67);
-    const float red = 0.70f + 0.10f * patch + 0.12f * lines + 0.35f * z->inner_lip;
+    const float red = 0.62f + 0.12f * patch + 0.12f * lines + 0.35f * z->inner_lip;
     ink->blood = ris_paint_mix(ink->blood, 0.30f + red, z->lip);
     ink->melanin = ris_paint_mix(ink->melanin, 0.58f, z->lip);
     ink->cold = ris_paint_mix(ink->cold, 0.08f, z->lip);
-    ink->shade += z->lip * (0.20f + 0.06f * lines) + 0.05f * z->lip_corner;
+    ink->shade += z->lip * (0.12f + 0.06f * lines) + 0.05f * z->lip_corner;
     const float deep = z->inner_mouth;
     ink->blood = ris_paint_mix(ink->blood, 1.25f + 0.15f * patch, deep);
     ink->melanin = ris_paint_mix(ink->melanin, 0.25f, deep);
@@ -90,11 +90,11 @@ static void stubble(const ris_paint_zones *z, ris_vec3 p, float brow, pigment *i
     const float density = z->scalp * thick;
     const float dot = chance < density ? ris_paint_step(0.62f, 0.15f, hair.near) : 0;
     ink->shade += 1.0f * density + 0.34f * dot;
-    ink->cold += 0.33f * density;
+    ink->cold += 0.38f * density;
     ink->melanin += 0.04f * density;
     ink->blood -= 0.06f * density;
-    ink->shade += 0.34f * brow;
-    ink->melanin += 0.30f * brow;
+    ink->shade += 0.80f * brow;
+    ink->melanin += 0.28f * brow;
 }
 
 /* Fine relief, 0 = mean: pores, the criss-cross of thin skin, lines of forehead and lips, stubble. mm-ish, about -1..1 */
@@ -157,7 +157,7 @@ ris_paint_texel ris_paint_skin(const ris_paint_surface *surface, const ris_paint
     stubble(&zones, site->p, site->brow, &ink);
     float pore = 0;
     const float height = relief(&zones, site->p, s, &pore);
-    ink.shade += 0.10f * pore - 0.035f * height;
+    ink.shade += 0.08f * pore - 0.035f * height;
     ink.blood += 0.05f * pore;
     ris_paint_texel texel;
     for (int k = 0; k < 3; k++) {

@@ -33,7 +33,7 @@ static float ear_radius(const ris_paint_surface *surface, ris_vec3 p)
 {
     const ris_vec3 ear = surface->at.ear[p.x < 0];
     const float s = surface->at.scale;
-    const float dy = (p.y - ear.y) / (33 * s), dz = (p.z - ear.z) / (20 * s);
+    const float dy = (p.y - ear.y) / (30 * s), dz = (p.z - ear.z) / (19 * s);
     return sqrtf(dy * dy + dz * dz);
 }
 
@@ -50,7 +50,7 @@ static float find_scalp(const ris_paint_surface *surface, ris_vec3 p)
     const float degrees = atan2f(fabsf(p.x), p.z - at->ear[0].z - 4) * 57.29578f;
     const float ragged = 5.0f * ris_paint_fbm(vec3_scale(p, 1 / 15.0f), 4, 11);
     const float over = over_hairline(degrees, (p.y - at->eye[0].y) / at->scale) + ragged;
-    const float clear = ris_paint_step(0.98f, 1.36f, ear_radius(surface, p) + 0.02f * ragged);
+    const float clear = ris_paint_step(0.84f, 1.16f, ear_radius(surface, p) + 0.02f * ragged);
     return ris_paint_step(-8, 15, over) * clear;
 }
 
