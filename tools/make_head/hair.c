@@ -71,7 +71,7 @@ static double along_brow(const double v[3], double t)
  * middle line, lower ones up. across is -1 (lower border) .. 1 (upper border). */
 static double brow_angle(double t, double across, double slope)
 {
-    double sweep = t < 0.3 ? 78 - 170 * t : 27 - 30 * (t - 0.3);
+    double sweep = t < 0.3 ? 66 - 130 * t : 27 - 30 * (t - 0.3);
     double converge = across > 0 ? -22 * across * smoothstep(0.08, 0.4, t) : -14 * across;
     return (sweep + converge) * PI / 180 + slope * smoothstep(0.1, 0.5, t);
 }
@@ -79,12 +79,12 @@ static double brow_angle(double t, double across, double slope)
 static void add_brow_hair(part *p, const maker *m, const brow_rule *rule, uint32_t i, uint32_t *state)
 {
     enum { POINTS = 5 };
-    double t = (i + chance(state)) / rule->count, across = clamp(0.62 * spread(state) + 0.5 * spread(state), -1, 1);
-    t = pow(t, 0.92);
+    double t = (i + chance(state)) / rule->count, across = 0.62 * spread(state) + 0.55 * spread(state);
+    t = pow(t, 0.86); /* thinner at the head */
     dvec here = curve_at(&rule->middle, t), ahead = curve_at(&rule->middle, t + 0.02), back = curve_at(&rule->middle, t - 0.02);
     double slope = atan2(ahead.y - back.y, ahead.x - back.x);
-    double width = along_brow(rule->width, t), length = along_brow(rule->length, t) * (0.8 + 0.35 * chance(state));
-    double angle = brow_angle(t, across, slope) + 0.16 * spread(state);
+    double width = along_brow(rule->width, t), length = along_brow(rule->length, t) * (0.62 + 0.5 * chance(state));
+    double angle = brow_angle(t, across, slope) + 0.24 * spread(state);
     double bend = (across > 0 ? -0.35 : -0.15 + 0.3 * across) * smoothstep(0.0, 0.3, t) + 0.12 * spread(state) - 0.12;
     double x = here.x - sin(slope) * across * width / 2, y = here.y + cos(slope) * across * width / 2;
     x -= 0.35 * length * cos(angle) * (t > 0.15);

@@ -12,7 +12,8 @@
 #define AROUND 14
 
 typedef struct arch {
-    double half_width, front_z, back_z, power, edge_y, rise, crown_mm, sign; /* sign: +1 edges point down (upper) */
+    double half_width, front_z, back_z, power, edge_y, rise, crown_mm, fold_mm; /* fold: height of the outer gum */
+    double sign;                                                             /* +1: edges point down (upper) */
     double length[ARC_STEPS + 1]; /* arc length from the middle to sample k */
     dvec at[ARC_STEPS + 1];       /* on the edge line, left half */
 } arch;
@@ -36,7 +37,8 @@ static void build_arch(const maker *m, const char *key, arch *a)
     *a = (arch){.half_width = recipe_number(rule, "half_width"), .front_z = recipe_number(rule, "front_z"),
                 .back_z = recipe_number(rule, "back_z"),         .power = recipe_number(rule, "power"),
                 .edge_y = recipe_number(rule, "edge_y"),         .rise = recipe_number(rule, "rise_mm"),
-                .crown_mm = recipe_number(rule, "crown_mm"),     .sign = strcmp(key, "upper") == 0 ? 1 : -1};
+                .crown_mm = recipe_number(rule, "crown_mm"),     .fold_mm = recipe_number(rule, "fold_mm"),
+                .sign = strcmp(key, "upper") == 0 ? 1 : -1};
     for (int k = 0; k <= ARC_STEPS; k++) {
         double angle = 0.5 * PI * k / ARC_STEPS, e = 2 / a->power;
         double x = a->half_width * pow(sin(angle), e), f = pow(cos(angle) > 0 ? cos(angle) : 0, e);
@@ -60,7 +62,6 @@ static dvec arch_at(const arch *a, double s, dvec *along, dvec *out)
         *along = v3(along->x, 0, -along->z);
     }
     *out = v_cross(*along, v3(0, 1, 0));
-    *out = v_mul(*out, -1);
     return p;
 }
 
@@ -68,11 +69,11 @@ static dvec arch_at(const arch *a, double s, dvec *along, dvec *out)
 static void section(const crown *c, double h, double *width, double *depth, double *lean)
 {
     double waist = 0.78 + 0.22 * smoothstep(-0.1, 0.62, h); /* narrower at the neck */
-    *width = 0.485 * c->width * waist;
+    *width = 0.497 * c->width * waist;
     if (c->cusps <= 1) { /* incisors and canines: wedge-shaped, lip side nearly flat */
         double thin = 1 - 0.80 * smoothstep(0.05, 1.0, h);
         *depth = 0.40 * c->depth * thin;
-        *lean = 0.40 * c->depth * (1 - thin) * 0.72 + 0.5 * sin(PI * clamp(h, 0, 1)) - 0.3 * h;
+        *lean = 0.40 * c->depth * (0.2 - thin) * 0.72 + 0.5 * sin(PI * clamp(h, 0, 1)) - 0.3 * (h - 1); /* 0 at the edge */
         if (c->cusps == 1)
             *width *= 1 - 0.42 * smoothstep(0.55, 1.0, h);
     } else {
@@ -114,7 +115,7 @@ static void add_tooth(part *p, const arch *a, const crown *c, double centre, dou
         }
         for (uint32_t k = 0; k < AROUND && last != NONE; k++) {
             uint32_t n = (k + 1) % AROUND;
-            if (a->sign > 0)
+            if (a->sign < 0)
                 part_quad(p, last + k, last + n, ring + n, ring + k);
             else
                 part_quad(p, last + n, last + k, ring + k, ring + n);
@@ -127,7 +128,7 @@ static void add_tooth(part *p, const arch *a, const crown *c, double centre, dou
     uint32_t tip = part_vertex(p, v_mad(v_mad(base, out, lean), up, y), (u0 + u1) / 2, 1);
     for (uint32_t k = 0; k < AROUND; k++) {
         uint32_t n = (k + 1) % AROUND;
-        if (a->sign > 0)
+        if (a->sign < 0)
             part_triangle(p, tip, last + k, last + n);
         else
             part_triangle(p, tip, last + n, last + k);
@@ -174,11 +175,12 @@ static void gum_station(part *p, const arch *a, const crown *c, double s, double
     double x = fabs(in_tooth - 0.5) / 0.378; /* the neck's section: |x|^2.78 + |z|^2.5 = 1 */
     double o = depth * (x < 1 ? 0.45 + 0.55 * pow(1 - pow(x, 2.78), 0.4) : 0.45), swell = 1 - 0.25 * between;
     const double profile[GUM_POINTS][2] = {
-        {depth + 1.2, line + 8}, {depth + 1.3, line + 5.5}, {o + 1.3 * swell, line + 3.0}, {o + 0.8 * swell, line + 1.0},
+        {depth + 0.3, line + a->fold_mm}, {depth + 0.9, line + 0.68 * a->fold_mm},
+        {o + 1.1 * swell, line + 0.38 * a->fold_mm}, {o + 0.8 * swell, line + 0.16 * a->fold_mm},
         {o * thin + 0.3, margin},
         {0, margin - 0.1 + 0.5 * (1 - between)},
-        {-o * thin - 0.3, margin}, {-o - 0.9 * swell, line + 1.2}, {-o - 2.0, line + 4.0}, {-o - 3.6, line + 7.5},
-        {-o - 5.0, line + 11}};
+        {-o * thin - 0.3, margin}, {-o - 0.9 * swell, line + 1.0}, {-depth - 1.5, line + 3.0}, {-depth - 2.1, line + 5.0},
+        {-depth - 2.4, line + 7.0}};
     for (int k = 0; k < GUM_POINTS; k++)
         part_vertex(p, v_mad(v_mad(base, out, profile[k][0] + lean), up, profile[k][1]), u, k / (GUM_POINTS - 1.0));
 }
@@ -211,7 +213,7 @@ static part build_gum(const arch *a, const crown *crowns)
     for (uint32_t i = 0; i + 1 < stations; i++)
         for (uint32_t k = 0; k + 1 < GUM_POINTS; k++) {
             uint32_t v = i * GUM_POINTS + k, w = v + GUM_POINTS;
-            if (a->sign > 0)
+            if (a->sign < 0)
                 part_quad(&p, v, w, w + 1, v + 1);
             else
                 part_quad(&p, v, v + 1, w + 1, w);
