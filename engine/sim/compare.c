@@ -15,10 +15,10 @@ typedef struct run {
     const ris_compare_def *def;
     ris_compare_report *report;
     const ris_model *model;
-    ris_vec4 *value[2];                  /* what was just read of a and b */
-    ris_vec4 *saved[2][RIS_STATE_COUNT]; /* state of a and b around a probe */
-    bool *moved;                         /* (node_count) */
-    float *pose;                         /* (channel_count) */
+    ris_vec4 *value[2];                                          /* what was just read of a and b */
+    ris_vec4 *saved[2][RIS_STATE_COUNT];                         /* state of a and b around a probe */
+    bool *moved;                                                 /* (node_count) */
+    float *pose;                                                 /* (channel_count) */
     double step_sum[RIS_STAGE_COUNT], clip_sum[RIS_STAGE_COUNT]; /* squares, mm^2 */
     uint64_t step_nodes[RIS_STAGE_COUNT], clip_nodes[RIS_STAGE_COUNT];
 } run;
@@ -26,8 +26,11 @@ typedef struct run {
 ris_compare_def ris_default_compare_def(ris_sim *a, ris_sim *b)
 {
     const bool exact = strstr(ris_sim_backend(a), "llvmpipe") || strstr(ris_sim_backend(b), "llvmpipe");
-    return (ris_compare_def){ .a = a, .b = b, .step_tolerance_mm = exact ? 0.0f : 1e-4f,
-                              .clip_tolerance_mm = exact ? 0.0f : 1e-2f, .moved_minimum = 500 };
+    return (ris_compare_def){.a = a,
+                             .b = b,
+                             .step_tolerance_mm = exact ? 0.0f : 1e-4f,
+                             .clip_tolerance_mm = exact ? 0.0f : 1e-2f,
+                             .moved_minimum = 500};
 }
 
 /* States that a stage writes; the first is the one measured in mm. Returns how many. */
@@ -141,7 +144,8 @@ static void measure(const run *r, ris_stage stage, ris_compare_stage *stats, dou
     stats->rms_mm = sqrt(*sum / (double)*nodes);
 }
 
-/* Reads and compares all that stage wrote. place is NULL in a probe, else tick and substep for the first difference. */
+/* Reads and compares all that stage wrote. place is NULL in a probe, else tick and substep for the first
+ * difference. */
 static ris_result compare_stage(run *r, ris_stage stage, const uint32_t place[2], ris_error *err)
 {
     ris_compare_report *report = r->report;
@@ -174,7 +178,8 @@ static ris_result compare_stage(run *r, ris_stage stage, const uint32_t place[2]
 }
 
 /* Runs one stage on both sides and compares. */
-static ris_result both_stage(run *r, ris_stage stage, const ris_anchor_frame *anchors, const uint32_t place[2], ris_error *err)
+static ris_result both_stage(run *r, ris_stage stage, const ris_anchor_frame *anchors,
+                             const uint32_t place[2], ris_error *err)
 {
     ris_result result = ris__sim_stage(r->def->a, stage, anchors ? &anchors[0] : NULL, err);
     if (result == RIS_OK) {
@@ -184,10 +189,11 @@ static ris_result both_stage(run *r, ris_stage stage, const ris_anchor_frame *an
 }
 
 /* A tick (or a probe's single step) stage by stage. */
-static ris_result lockstep(run *r, const ris_anchor_frame *anchors, uint32_t tick, uint32_t substeps, bool probe, ris_error *err)
+static ris_result lockstep(run *r, const ris_anchor_frame *anchors, uint32_t tick, uint32_t substeps,
+                           bool probe, ris_error *err)
 {
     const bool bend = !(r->model->push.flags & RIS_TISSUE_FLAG_KAEHLER);
-    uint32_t place[2] = { tick, 0 };
+    uint32_t place[2] = {tick, 0};
     const uint32_t *where = probe ? NULL : place;
     ris_result result = both_stage(r, RIS_STAGE_ANCHOR_SHIFT, anchors, where, err);
     for (uint32_t k = 0; k < substeps && result == RIS_OK; k++) {
@@ -209,7 +215,7 @@ static ris_result lockstep(run *r, const ris_anchor_frame *anchors, uint32_t tic
 /* One step of every stage from a's state on both sides; then both states are put back. */
 static ris_result probe(run *r, const ris_anchor_frame *anchors, uint32_t tick, ris_error *err)
 {
-    ris_sim *const side[2] = { r->def->a, r->def->b };
+    ris_sim *const side[2] = {r->def->a, r->def->b};
     ris_result result = RIS_OK;
     for (int s = 0; s < RIS_STATE_COUNT && result == RIS_OK; s++) {
         for (int k = 0; k < 2 && result == RIS_OK; k++) {
@@ -256,8 +262,8 @@ static ris_result reset_both(run *r, ris_error *err)
 /* Pass 1: whole ticks, as the engine runs them. */
 static ris_result run_ticks(run *r, ris_error *err)
 {
-    static const ris_state end_state[] = { RIS_STATE_POSITION, RIS_STATE_VELOCITY_HALF, RIS_STATE_VELOCITY_PREV,
-                                           RIS_STATE_NORMAL };
+    static const ris_state end_state[] = {RIS_STATE_POSITION, RIS_STATE_VELOCITY_HALF,
+                                          RIS_STATE_VELOCITY_PREV, RIS_STATE_NORMAL};
     ris_result result = reset_both(r, err);
     for (uint32_t tick = 1; tick <= r->def->tick_count && result == RIS_OK; tick++) {
         bool same = true;
@@ -305,7 +311,8 @@ static ris_result run_stages(run *r, ris_error *err)
     return result;
 }
 
-/* Whole ticks and single stages must have ended in the same state, or one of the two passes did something else. */
+/* Whole ticks and single stages must have ended in the same state, or one of the two passes did something
+ * else. */
 static ris_result check_passes(run *r, ris_error *err)
 {
     for (int side = 0; side < 2; side++) {
@@ -315,8 +322,10 @@ static ris_result check_passes(run *r, ris_error *err)
             return result;
         }
         if (hash != r->report->hash[side]) {
-            return ris_fail(err, RIS_ERROR_FAILED, "%s: whole ticks end in state %016llx, the same stages one by one in %016llx",
-                            r->report->backend[side], (unsigned long long)r->report->hash[side], (unsigned long long)hash);
+            return ris_fail(err, RIS_ERROR_FAILED,
+                            "%s: whole ticks end in state %016llx, the same stages one by one in %016llx",
+                            r->report->backend[side], (unsigned long long)r->report->hash[side],
+                            (unsigned long long)hash);
         }
     }
     return RIS_OK;
@@ -339,16 +348,18 @@ static ris_result judge(const run *r, ris_error *err)
             return ris_fail(err, RIS_ERROR_FAILED,
                             "%s and %s differ in %s by up to %g mm (%llu words) %s, allowed %g mm; "
                             "the first difference is in %s, tick %u, substep %u, vertex %u",
-                            report->backend[0], report->backend[1], ris_stage_name((ris_stage)s), stats->max_mm,
-                            (unsigned long long)stats->differing_words, clip ? "over the clip" : "after one step",
+                            report->backend[0], report->backend[1], ris_stage_name((ris_stage)s),
+                            stats->max_mm, (unsigned long long)stats->differing_words,
+                            clip ? "over the clip" : "after one step",
                             (double)(clip ? r->def->clip_tolerance_mm : r->def->step_tolerance_mm),
                             ris_stage_name(report->first_stage), report->first_tick, report->first_substep,
                             report->first_vertex);
         }
     }
     if (r->def->clip_tolerance_mm <= 0.0f && report->differing_ticks) {
-        return ris_fail(err, RIS_ERROR_FAILED, "%s and %s differ after %llu of %u whole ticks", report->backend[0],
-                        report->backend[1], (unsigned long long)report->differing_ticks, report->tick_count);
+        return ris_fail(err, RIS_ERROR_FAILED, "%s and %s differ after %llu of %u whole ticks",
+                        report->backend[0], report->backend[1], (unsigned long long)report->differing_ticks,
+                        report->tick_count);
     }
     return RIS_OK;
 }
@@ -364,7 +375,8 @@ ris_result ris_compare_run(const ris_compare_def *def, ris_compare_report *out, 
         return ris_fail(err, RIS_ERROR_USAGE, "%s would be compared with itself", out->backend[0]);
     }
     if (ris_sim_get_model(def->a) != ris_sim_get_model(def->b) || def->tick_count == 0) {
-        return ris_fail(err, RIS_ERROR_USAGE, "a comparison needs two simulations of one model and at least one tick");
+        return ris_fail(err, RIS_ERROR_USAGE,
+                        "a comparison needs two simulations of one model and at least one tick");
     }
     result = init_run(&r, def, out, err);
     out->tick_count = def->tick_count;
@@ -375,8 +387,8 @@ ris_result ris_compare_run(const ris_compare_def *def, ris_compare_report *out, 
         result = run_ticks(&r, err);
     }
     if (result == RIS_OK && out->moved_count < def->moved_minimum) {
-        result = ris_fail(err, RIS_ERROR_FAILED, "the clip moves %u vertices by 2 mm, a comparison needs %u", out->moved_count,
-                          def->moved_minimum);
+        result = ris_fail(err, RIS_ERROR_FAILED, "the clip moves %u vertices by 2 mm, a comparison needs %u",
+                          out->moved_count, def->moved_minimum);
     }
     if (result == RIS_OK) {
         result = run_stages(&r, err);

@@ -1,4 +1,5 @@
-/* Buffers by use: device local, upload, readback. One allocation per buffer; callers cut few large ones into ranges. */
+/* Buffers by use: device local, upload, readback. One allocation per buffer; callers cut few large ones
+ * into ranges. */
 #include "vk.h"
 
 #include <string.h>
@@ -37,15 +38,17 @@ static void memory_flags(ris_vk_use use, VkMemoryPropertyFlags *wanted, VkMemory
     }
 }
 
-ris_result ris_vk_buffer_create(ris_device *vk, ris_vk_use use, VkDeviceSize size, VkBufferUsageFlags usage, const char *name,
-                                ris_vk_buffer *out, ris_error *err)
+ris_result ris_vk_buffer_create(ris_device *vk, ris_vk_use use, VkDeviceSize size, VkBufferUsageFlags usage,
+                                const char *name, ris_vk_buffer *out, ris_error *err)
 {
     ris_result result = RIS_OK;
     VkMemoryRequirements requirements;
     VkMemoryPropertyFlags wanted, preferred, flags;
-    VkBufferCreateInfo info = { .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = size,
-                                .usage = usage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT };
-    VkMemoryAllocateInfo allocate = { .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO };
+    VkBufferCreateInfo info = {.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
+                               .size = size,
+                               .usage = usage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
+                                        VK_BUFFER_USAGE_TRANSFER_DST_BIT};
+    VkMemoryAllocateInfo allocate = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
     memset(out, 0, sizeof *out);
     if (size == 0) {
         return ris_fail(err, RIS_ERROR_DEVICE, "buffer %s has size 0", name);
@@ -63,7 +66,8 @@ ris_result ris_vk_buffer_create(ris_device *vk, ris_vk_use use, VkDeviceSize siz
     flags = vk->memory.memoryTypes[allocate.memoryTypeIndex].propertyFlags;
     out->coherent = (flags & VK_MEMORY_PROPERTY_HOST_COHERENT_BIT) != 0;
     out->cached = (flags & VK_MEMORY_PROPERTY_HOST_CACHED_BIT) != 0;
-    out->device_local = (flags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT) != 0 && !(vk->staging && use != RIS_VK_DEVICE);
+    out->device_local =
+        (flags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT) != 0 && !(vk->staging && use != RIS_VK_DEVICE);
     out->size = size;
     RIS_VK(vkAllocateMemory(vk->handle, &allocate, NULL, &out->memory));
     RIS_VK(vkBindBufferMemory(vk->handle, out->handle, out->memory, 0));
@@ -90,8 +94,8 @@ void ris_vk_buffer_finish(ris_device *vk, ris_vk_buffer *buffer)
 ris_result ris_vk_buffer_flush(ris_device *vk, const ris_vk_buffer *buffer, ris_error *err)
 {
     ris_result result = RIS_OK;
-    VkMappedMemoryRange range = { .sType = VK_STRUCTURE_TYPE_MAPPED_MEMORY_RANGE, .memory = buffer->memory,
-                                  .size = VK_WHOLE_SIZE };
+    VkMappedMemoryRange range = {
+        .sType = VK_STRUCTURE_TYPE_MAPPED_MEMORY_RANGE, .memory = buffer->memory, .size = VK_WHOLE_SIZE};
     if (!buffer->coherent) {
         RIS_VK(vkFlushMappedMemoryRanges(vk->handle, 1, &range));
     }
@@ -102,8 +106,8 @@ fail:
 ris_result ris_vk_buffer_invalidate(ris_device *vk, const ris_vk_buffer *buffer, ris_error *err)
 {
     ris_result result = RIS_OK;
-    VkMappedMemoryRange range = { .sType = VK_STRUCTURE_TYPE_MAPPED_MEMORY_RANGE, .memory = buffer->memory,
-                                  .size = VK_WHOLE_SIZE };
+    VkMappedMemoryRange range = {
+        .sType = VK_STRUCTURE_TYPE_MAPPED_MEMORY_RANGE, .memory = buffer->memory, .size = VK_WHOLE_SIZE};
     if (!buffer->coherent) {
         RIS_VK(vkInvalidateMappedMemoryRanges(vk->handle, 1, &range));
     }
@@ -111,20 +115,23 @@ fail:
     return result;
 }
 
-/* Copies between a buffer and a fresh staging buffer on the queue; writes when data is given, else reads into out. */
-static ris_result staged(ris_device *vk, ris_vk_buffer *buffer, VkDeviceSize offset, const void *data, void *out,
-                         VkDeviceSize size, ris_error *err)
+/* Copies between a buffer and a fresh staging buffer on the queue; writes when data is given, else reads
+ * into out. */
+static ris_result staged(ris_device *vk, ris_vk_buffer *buffer, VkDeviceSize offset, const void *data,
+                         void *out, VkDeviceSize size, ris_error *err)
 {
     ris_result result = RIS_OK;
-    ris_vk_buffer staging = { 0 };
-    ris_vk_cmd cmd = { 0 };
-    VkBufferCopy copy = { .size = size };
+    ris_vk_buffer staging = {0};
+    ris_vk_cmd cmd = {0};
+    VkBufferCopy copy = {.size = size};
     const VkPipelineStageFlags2 all = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
     const VkAccessFlags2 any = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
-    RIS_TRY(ris_vk_buffer_create(vk, data ? RIS_VK_UPLOAD : RIS_VK_READBACK, size, 0, "staging", &staging, err));
+    RIS_TRY(
+        ris_vk_buffer_create(vk, data ? RIS_VK_UPLOAD : RIS_VK_READBACK, size, 0, "staging", &staging, err));
     RIS_TRY(ris_vk_cmd_create(vk, "staging", &cmd, err));
     RIS_TRY(ris_vk_cmd_begin(vk, &cmd, true, err));
-    ris_vk_barrier(cmd.handle, all, any, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT);
+    ris_vk_barrier(cmd.handle, all, any, VK_PIPELINE_STAGE_2_COPY_BIT,
+                   VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT);
     if (data) {
         memcpy(staging.data, data, (size_t)size);
         RIS_TRY(ris_vk_buffer_flush(vk, &staging, err));
@@ -148,8 +155,8 @@ fail:
     return result;
 }
 
-ris_result ris_vk_buffer_write(ris_device *vk, ris_vk_buffer *buffer, VkDeviceSize offset, const void *data, VkDeviceSize size,
-                               ris_error *err)
+ris_result ris_vk_buffer_write(ris_device *vk, ris_vk_buffer *buffer, VkDeviceSize offset, const void *data,
+                               VkDeviceSize size, ris_error *err)
 {
     if (buffer->data) {
         memcpy((char *)buffer->data + offset, data, (size_t)size);
@@ -158,8 +165,8 @@ ris_result ris_vk_buffer_write(ris_device *vk, ris_vk_buffer *buffer, VkDeviceSi
     return staged(vk, buffer, offset, data, NULL, size, err);
 }
 
-ris_result ris_vk_buffer_read(ris_device *vk, ris_vk_buffer *buffer, VkDeviceSize offset, void *out, VkDeviceSize size,
-                              ris_error *err)
+ris_result ris_vk_buffer_read(ris_device *vk, ris_vk_buffer *buffer, VkDeviceSize offset, void *out,
+                              VkDeviceSize size, ris_error *err)
 {
     return staged(vk, buffer, offset, NULL, out, size, err);
 }

@@ -6,34 +6,46 @@
 void ris_vk_barrier(VkCommandBuffer cmd, VkPipelineStageFlags2 src_stage, VkAccessFlags2 src_access,
                     VkPipelineStageFlags2 dst_stage, VkAccessFlags2 dst_access)
 {
-    VkMemoryBarrier2 barrier = { .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2, .srcStageMask = src_stage,
-                                 .srcAccessMask = src_access, .dstStageMask = dst_stage, .dstAccessMask = dst_access };
-    VkDependencyInfo info = { .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1,
-                              .pMemoryBarriers = &barrier };
+    VkMemoryBarrier2 barrier = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+                                .srcStageMask = src_stage,
+                                .srcAccessMask = src_access,
+                                .dstStageMask = dst_stage,
+                                .dstAccessMask = dst_access};
+    VkDependencyInfo info = {
+        .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &barrier};
     vkCmdPipelineBarrier2(cmd, &info);
 }
 
-void ris_vk_image_barrier(VkCommandBuffer cmd, VkImage image, VkImageAspectFlags aspect, ris_vk_access from, ris_vk_access to)
+void ris_vk_image_barrier(VkCommandBuffer cmd, VkImage image, VkImageAspectFlags aspect, ris_vk_access from,
+                          ris_vk_access to)
 {
     VkImageMemoryBarrier2 barrier = {
         .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
-        .srcStageMask = from.stage, .srcAccessMask = from.access, .oldLayout = from.layout,
-        .dstStageMask = to.stage, .dstAccessMask = to.access, .newLayout = to.layout,
-        .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED, .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+        .srcStageMask = from.stage,
+        .srcAccessMask = from.access,
+        .oldLayout = from.layout,
+        .dstStageMask = to.stage,
+        .dstAccessMask = to.access,
+        .newLayout = to.layout,
+        .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+        .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
         .image = image,
-        .subresourceRange = { aspect, 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS },
+        .subresourceRange = {aspect, 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS},
     };
-    VkDependencyInfo info = { .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .imageMemoryBarrierCount = 1,
-                              .pImageMemoryBarriers = &barrier };
+    VkDependencyInfo info = {.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+                             .imageMemoryBarrierCount = 1,
+                             .pImageMemoryBarriers = &barrier};
     vkCmdPipelineBarrier2(cmd, &info);
 }
 
 ris_result ris_vk_cmd_create(ris_device *vk, const char *name, ris_vk_cmd *out, ris_error *err)
 {
     ris_result result = RIS_OK;
-    VkCommandBufferAllocateInfo info = { .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, .commandPool = vk->pool,
-                                         .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY, .commandBufferCount = 1 };
-    VkFenceCreateInfo fence = { .sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO };
+    VkCommandBufferAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+                                        .commandPool = vk->pool,
+                                        .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
+                                        .commandBufferCount = 1};
+    VkFenceCreateInfo fence = {.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
     memset(out, 0, sizeof *out);
     RIS_VK(vkAllocateCommandBuffers(vk->handle, &info, &out->handle));
     RIS_VK(vkCreateFence(vk->handle, &fence, NULL, &out->fence));
@@ -61,8 +73,8 @@ void ris_vk_cmd_finish(ris_device *vk, ris_vk_cmd *cmd)
 ris_result ris_vk_cmd_begin(ris_device *vk, ris_vk_cmd *cmd, bool one_time, ris_error *err)
 {
     ris_result result = RIS_OK;
-    VkCommandBufferBeginInfo info = { .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
-                                      .flags = one_time ? VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT : 0 };
+    VkCommandBufferBeginInfo info = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
+                                     .flags = one_time ? VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT : 0};
     if (cmd->pending) {
         RIS_TRY(ris_vk_cmd_wait(vk, cmd, err));
     }
@@ -79,18 +91,25 @@ fail:
     return result;
 }
 
-ris_result ris_vk_cmd_submit(ris_device *vk, ris_vk_cmd *cmd, VkSemaphore wait, VkSemaphore signal, ris_error *err)
+ris_result ris_vk_cmd_submit(ris_device *vk, ris_vk_cmd *cmd, VkSemaphore wait, VkSemaphore signal,
+                             ris_error *err)
 {
     ris_result result = RIS_OK;
-    VkCommandBufferSubmitInfo buffer = { .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO, .commandBuffer = cmd->handle };
-    VkSemaphoreSubmitInfo before = { .sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO, .semaphore = wait,
-                                     .stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT };
-    VkSemaphoreSubmitInfo after = { .sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO, .semaphore = signal,
-                                    .stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT };
-    VkSubmitInfo2 info = { .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2, .commandBufferInfoCount = 1,
-                           .pCommandBufferInfos = &buffer, .waitSemaphoreInfoCount = wait ? 1 : 0,
-                           .pWaitSemaphoreInfos = &before, .signalSemaphoreInfoCount = signal ? 1 : 0,
-                           .pSignalSemaphoreInfos = &after };
+    VkCommandBufferSubmitInfo buffer = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
+                                        .commandBuffer = cmd->handle};
+    VkSemaphoreSubmitInfo before = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO,
+                                    .semaphore = wait,
+                                    .stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT};
+    VkSemaphoreSubmitInfo after = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO,
+                                   .semaphore = signal,
+                                   .stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT};
+    VkSubmitInfo2 info = {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2,
+                          .commandBufferInfoCount = 1,
+                          .pCommandBufferInfos = &buffer,
+                          .waitSemaphoreInfoCount = wait ? 1 : 0,
+                          .pWaitSemaphoreInfos = &before,
+                          .signalSemaphoreInfoCount = signal ? 1 : 0,
+                          .pSignalSemaphoreInfos = &after};
     RIS_VK(vkResetFences(vk->handle, 1, &cmd->fence));
     RIS_VK(vkQueueSubmit2(vk->queue, 1, &info, cmd->fence));
     cmd->pending = true;
@@ -134,8 +153,9 @@ fail:
 ris_result ris_vk_query_create(ris_device *vk, uint32_t count, ris_vk_query *out, ris_error *err)
 {
     ris_result result = RIS_OK;
-    VkQueryPoolCreateInfo info = { .sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO, .queryType = VK_QUERY_TYPE_TIMESTAMP,
-                                   .queryCount = count };
+    VkQueryPoolCreateInfo info = {.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
+                                  .queryType = VK_QUERY_TYPE_TIMESTAMP,
+                                  .queryCount = count};
     memset(out, 0, sizeof *out);
     if (count == 0 || vk->timestamp_bits == 0) {
         return RIS_OK;
@@ -174,8 +194,8 @@ ris_result ris_vk_query_read(ris_device *vk, const ris_vk_query *query, uint64_t
 {
     ris_result result = RIS_OK;
     if (query->pool) {
-        RIS_VK(vkGetQueryPoolResults(vk->handle, query->pool, 0, query->count, query->count * sizeof *out, out, sizeof *out,
-                                     VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT));
+        RIS_VK(vkGetQueryPoolResults(vk->handle, query->pool, 0, query->count, query->count * sizeof *out,
+                                     out, sizeof *out, VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT));
     }
 fail:
     return result;

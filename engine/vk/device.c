@@ -21,7 +21,7 @@ static const char *type_name(VkPhysicalDeviceType type)
 
 static int type_rank(const char *type)
 {
-    static const char *const order[] = { "discrete", "integrated", "virtual", "cpu", "other" };
+    static const char *const order[] = {"discrete", "integrated", "virtual", "cpu", "other"};
     int rank = 0;
     while (rank < 4 && strcmp(order[rank], type) != 0) {
         rank++;
@@ -64,7 +64,8 @@ static bool has_device_extension(VkPhysicalDevice physical, const char *name)
         return false;
     }
     properties = calloc(count ? count : 1, sizeof *properties);
-    if (properties && vkEnumerateDeviceExtensionProperties(physical, NULL, &count, properties) == VK_SUCCESS) {
+    if (properties &&
+        vkEnumerateDeviceExtensionProperties(physical, NULL, &count, properties) == VK_SUCCESS) {
         for (uint32_t i = 0; i < count; i++) {
             found = found || strcmp(properties[i].extensionName, name) == 0;
         }
@@ -75,10 +76,11 @@ static bool has_device_extension(VkPhysicalDevice physical, const char *name)
 
 static void check_features(VkPhysicalDevice physical, ris_device_info *info)
 {
-    VkPhysicalDeviceVulkan13Features v13 = { .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES };
-    VkPhysicalDeviceVulkan12Features v12 = { .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES,
-                                             .pNext = &v13 };
-    VkPhysicalDeviceFeatures2 features = { .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &v12 };
+    VkPhysicalDeviceVulkan13Features v13 = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
+    VkPhysicalDeviceVulkan12Features v12 = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES,
+                                            .pNext = &v13};
+    VkPhysicalDeviceFeatures2 features = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
+                                          .pNext = &v12};
     vkGetPhysicalDeviceFeatures2(physical, &features);
     miss(info, v12.scalarBlockLayout, "scalarBlockLayout");
     miss(info, v13.synchronization2, "synchronization2");
@@ -88,8 +90,8 @@ static void check_features(VkPhysicalDevice physical, ris_device_info *info)
 
 static void describe(VkPhysicalDevice physical, bool present, ris_device_info *info)
 {
-    VkPhysicalDeviceDriverProperties driver = { .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES };
-    VkPhysicalDeviceProperties2 properties = { .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2 };
+    VkPhysicalDeviceDriverProperties driver = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
+    VkPhysicalDeviceProperties2 properties = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
     const VkPhysicalDeviceLimits *limits = &properties.properties.limits;
     VkSampleCountFlags samples;
     uint32_t timestamp_bits;
@@ -110,7 +112,8 @@ static void describe(VkPhysicalDevice physical, bool present, ris_device_info *i
     check_features(physical, info);
     samples = limits->framebufferColorSampleCounts & limits->framebufferDepthSampleCounts;
     miss(info, (samples & VK_SAMPLE_COUNT_4_BIT) != 0, "4x multisampling");
-    miss(info, limits->maxPerStageDescriptorStorageBuffers >= STORAGE_BUFFERS_NEEDED, "14 storage buffers a stage");
+    miss(info, limits->maxPerStageDescriptorStorageBuffers >= STORAGE_BUFFERS_NEEDED,
+         "14 storage buffers a stage");
     miss(info, find_family(physical, &timestamp_bits) != UINT32_MAX, "a queue with graphics and compute");
     if (present) {
         miss(info, has_device_extension(physical, VK_KHR_SWAPCHAIN_EXTENSION_NAME), "VK_KHR_swapchain");
@@ -143,7 +146,7 @@ fail:
 
 ris_result ris_device_list(ris_device_info *out, uint32_t capacity, uint32_t *out_count, ris_error *err)
 {
-    ris_device vk = { 0 };
+    ris_device vk = {0};
     VkPhysicalDevice *physical = NULL;
     ris_result result;
     *out_count = 0;
@@ -206,7 +209,9 @@ static ris_result choose(ris_device *vk, const ris_device_def *def, ris_error *e
     ris_result result;
     RIS_TRY(enumerate(vk, &physical, &count, err));
     if (count == 0) {
-        result = ris_fail(err, RIS_ERROR_DEVICE, "there is no Vulkan device on this machine (Debian: apt-get install mesa-vulkan-drivers)");
+        result = ris_fail(
+            err, RIS_ERROR_DEVICE,
+            "there is no Vulkan device on this machine (Debian: apt-get install mesa-vulkan-drivers)");
         goto fail;
     }
     info = calloc(count, sizeof *info);
@@ -219,7 +224,8 @@ static ris_result choose(ris_device *vk, const ris_device_def *def, ris_error *e
     }
     best = match(info, count, select);
     if (best == UINT32_MAX) {
-        result = ris_fail(err, RIS_ERROR_DEVICE, "no Vulkan device \"%s\" among %u (`risorius devices` lists them)", select, count);
+        result = ris_fail(err, RIS_ERROR_DEVICE,
+                          "no Vulkan device \"%s\" among %u (`risorius devices` lists them)", select, count);
         goto fail;
     }
     if (!info[best].usable) {
@@ -238,20 +244,26 @@ static ris_result open_device(ris_device *vk, ris_error *err)
 {
     ris_result result = RIS_OK;
     const float priority = 1.0f;
-    const char *const extensions[] = { VK_KHR_SWAPCHAIN_EXTENSION_NAME };
+    const char *const extensions[] = {VK_KHR_SWAPCHAIN_EXTENSION_NAME};
     VkPhysicalDeviceFeatures offered;
-    VkPhysicalDeviceVulkan13Features v13 = { .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,
-                                             .synchronization2 = VK_TRUE, .dynamicRendering = VK_TRUE,
-                                             .maintenance4 = VK_TRUE };
-    VkPhysicalDeviceVulkan12Features v12 = { .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES,
-                                             .pNext = &v13, .scalarBlockLayout = VK_TRUE };
-    VkDeviceQueueCreateInfo queue = { .sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO, .queueCount = 1,
-                                      .pQueuePriorities = &priority };
-    VkDeviceCreateInfo info = { .sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, .pNext = &v12, .queueCreateInfoCount = 1,
-                                .pQueueCreateInfos = &queue, .enabledExtensionCount = vk->present ? 1 : 0,
-                                .ppEnabledExtensionNames = extensions, .pEnabledFeatures = &vk->features };
-    VkCommandPoolCreateInfo pool = { .sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
-                                     .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT };
+    VkPhysicalDeviceVulkan13Features v13 = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,
+                                            .synchronization2 = VK_TRUE,
+                                            .dynamicRendering = VK_TRUE,
+                                            .maintenance4 = VK_TRUE};
+    VkPhysicalDeviceVulkan12Features v12 = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES,
+                                            .pNext = &v13,
+                                            .scalarBlockLayout = VK_TRUE};
+    VkDeviceQueueCreateInfo queue = {
+        .sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO, .queueCount = 1, .pQueuePriorities = &priority};
+    VkDeviceCreateInfo info = {.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+                               .pNext = &v12,
+                               .queueCreateInfoCount = 1,
+                               .pQueueCreateInfos = &queue,
+                               .enabledExtensionCount = vk->present ? 1 : 0,
+                               .ppEnabledExtensionNames = extensions,
+                               .pEnabledFeatures = &vk->features};
+    VkCommandPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+                                    .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT};
     vkGetPhysicalDeviceProperties(vk->physical, &vk->properties);
     vkGetPhysicalDeviceMemoryProperties(vk->physical, &vk->memory);
     vkGetPhysicalDeviceFeatures(vk->physical, &offered);
@@ -270,7 +282,7 @@ fail:
 
 ris_result ris_device_create(const ris_device_def *def, ris_device **out, ris_error *err)
 {
-    static const ris_device_def plain = { 0 };
+    static const ris_device_def plain = {0};
     ris_result result;
     const char *staging;
     ris_device *vk = calloc(1, sizeof *vk);
@@ -331,8 +343,10 @@ uint32_t ris_device_message_count(const ris_device *vk, const char **out_first)
 
 void ris_vk_name(ris_device *vk, VkObjectType type, uint64_t handle, const char *name)
 {
-    VkDebugUtilsObjectNameInfoEXT info = { .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT, .objectType = type,
-                                           .objectHandle = handle, .pObjectName = name };
+    VkDebugUtilsObjectNameInfoEXT info = {.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT,
+                                          .objectType = type,
+                                          .objectHandle = handle,
+                                          .pObjectName = name};
     if (vk->set_name && name && handle) {
         vk->set_name(vk->handle, &info); /* a name that cannot be set changes nothing */
     }

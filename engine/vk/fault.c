@@ -6,7 +6,7 @@
 static _Thread_local struct {
     int64_t at, count;
     VkResult what;
-} fault = { -1, 0, VK_SUCCESS };
+} fault = {-1, 0, VK_SUCCESS};
 
 void ris__vk_fault_set(int64_t n, VkResult what)
 {
@@ -31,7 +31,7 @@ VkResult ris__vk_gate(ris_device *vk)
 const char *ris_vk_result_name(VkResult result)
 {
     switch (result) {
-#define NAME(x) \
+#define NAME(x)                                                                                              \
     case x: return #x
         NAME(VK_SUCCESS);
         NAME(VK_NOT_READY);
@@ -65,7 +65,8 @@ static int call_length(const char *call)
     return (int)strcspn(call, "(");
 }
 
-ris_result ris__vk_fail(ris_device *vk, ris_error *err, VkResult result, const char *call, const char *file, int line)
+ris_result ris__vk_fail(ris_device *vk, ris_error *err, VkResult result, const char *call, const char *file,
+                        int line)
 {
     const char *slash = strrchr(file, '/');
     const bool named = vk && vk->info.name[0];
@@ -76,6 +77,7 @@ ris_result ris__vk_fail(ris_device *vk, ris_error *err, VkResult result, const c
     if (result == VK_ERROR_OUT_OF_HOST_MEMORY || result == VK_ERROR_OUT_OF_DEVICE_MEMORY) {
         code = RIS_ERROR_MEMORY;
     }
-    return ris_fail(err, code, "%s%s%.*s failed with %s (%d) at %s:%d", named ? vk->info.name : "", named ? ": " : "",
-                    call_length(call), call, ris_vk_result_name(result), (int)result, slash ? slash + 1 : file, line);
+    return ris_fail(err, code, "%s%s%.*s failed with %s (%d) at %s:%d", named ? vk->info.name : "",
+                    named ? ": " : "", call_length(call), call, ris_vk_result_name(result), (int)result,
+                    slash ? slash + 1 : file, line);
 }

@@ -70,13 +70,15 @@ fail:
     return result;
 }
 
-static ris_result create_messenger(ris_device *vk, const VkDebugUtilsMessengerCreateInfoEXT *info, ris_error *err)
+static ris_result create_messenger(ris_device *vk, const VkDebugUtilsMessengerCreateInfoEXT *info,
+                                   ris_error *err)
 {
     ris_result result = RIS_OK;
     PFN_vkCreateDebugUtilsMessengerEXT vk_create_messenger =
-        (PFN_vkCreateDebugUtilsMessengerEXT)vkGetInstanceProcAddr(vk->instance, "vkCreateDebugUtilsMessengerEXT");
-    vk->destroy_messenger =
-        (PFN_vkDestroyDebugUtilsMessengerEXT)vkGetInstanceProcAddr(vk->instance, "vkDestroyDebugUtilsMessengerEXT");
+        (PFN_vkCreateDebugUtilsMessengerEXT)vkGetInstanceProcAddr(vk->instance,
+                                                                  "vkCreateDebugUtilsMessengerEXT");
+    vk->destroy_messenger = (PFN_vkDestroyDebugUtilsMessengerEXT)vkGetInstanceProcAddr(
+        vk->instance, "vkDestroyDebugUtilsMessengerEXT");
     if (!vk_create_messenger || !vk->destroy_messenger) {
         return ris_fail(err, RIS_ERROR_DEVICE, "VK_EXT_debug_utils is present but its functions are not");
     }
@@ -92,36 +94,46 @@ static ris_result create(ris_device *vk, const VkInstanceCreateInfo *info, ris_e
         created = vkCreateInstance(info, NULL, &vk->instance);
     }
     if (created == VK_ERROR_INCOMPATIBLE_DRIVER) { /* the loader found no driver at all */
-        return ris_fail(err, RIS_ERROR_DEVICE,
-                        "there is no Vulkan driver on this machine (Debian: apt-get install mesa-vulkan-drivers)");
+        return ris_fail(
+            err, RIS_ERROR_DEVICE,
+            "there is no Vulkan driver on this machine (Debian: apt-get install mesa-vulkan-drivers)");
     }
-    return created == VK_SUCCESS ? RIS_OK : ris__vk_fail(vk, err, created, "vkCreateInstance", __FILE__, __LINE__);
+    return created == VK_SUCCESS ? RIS_OK
+                                 : ris__vk_fail(vk, err, created, "vkCreateInstance", __FILE__, __LINE__);
 }
 
-ris_result ris__vk_instance_create(ris_device *vk, const char *const *extensions, uint32_t extension_count, ris_error *err)
+ris_result ris__vk_instance_create(ris_device *vk, const char *const *extensions, uint32_t extension_count,
+                                   ris_error *err)
 {
     ris_result result = RIS_OK;
     const char *wanted = getenv("RIS_VALIDATION");
     const char *names[32];
-    const char *layers[1] = { validation_layer };
+    const char *layers[1] = {validation_layer};
     uint32_t count = 0;
-    VkValidationFeatureEnableEXT enable[1] = { VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT };
-    VkValidationFeaturesEXT features = { .sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT,
-                                         .enabledValidationFeatureCount = 1, .pEnabledValidationFeatures = enable };
+    VkValidationFeatureEnableEXT enable[1] = {VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
+    VkValidationFeaturesEXT features = {.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT,
+                                        .enabledValidationFeatureCount = 1,
+                                        .pEnabledValidationFeatures = enable};
     VkDebugUtilsMessengerCreateInfoEXT messenger = {
         .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
         .pNext = &features,
-        .messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
-        .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT |
+        .messageSeverity =
+            VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
+        .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT |
+                       VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT |
                        VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT,
         .pfnUserCallback = on_message,
         .pUserData = vk,
     };
-    VkApplicationInfo application = { .sType = VK_STRUCTURE_TYPE_APPLICATION_INFO, .pApplicationName = "risorius",
-                                      .pEngineName = "risorius", .apiVersion = VK_API_VERSION_1_3 };
-    VkInstanceCreateInfo info = { .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO, .pApplicationInfo = &application };
+    VkApplicationInfo application = {.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
+                                     .pApplicationName = "risorius",
+                                     .pEngineName = "risorius",
+                                     .apiVersion = VK_API_VERSION_1_3};
+    VkInstanceCreateInfo info = {.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
+                                 .pApplicationInfo = &application};
     if (extension_count > 30) {
-        return ris_fail(err, RIS_ERROR_DEVICE, "%u instance extensions asked for, at most 30 expected", extension_count);
+        return ris_fail(err, RIS_ERROR_DEVICE, "%u instance extensions asked for, at most 30 expected",
+                        extension_count);
     }
     for (uint32_t i = 0; i < extension_count; i++) {
         names[count++] = extensions[i];
@@ -131,7 +143,8 @@ ris_result ris__vk_instance_create(ris_device *vk, const char *const *extensions
         bool found = false;
         RIS_TRY(has_validation_layer(&found, err));
         if (!found) {
-            return ris_fail(err, RIS_ERROR_DEVICE, "RIS_VALIDATION=1 but %s is not installed", validation_layer);
+            return ris_fail(err, RIS_ERROR_DEVICE, "RIS_VALIDATION=1 but %s is not installed",
+                            validation_layer);
         }
         info.enabledLayerCount = 1;
         info.ppEnabledLayerNames = layers;
@@ -149,7 +162,8 @@ ris_result ris__vk_instance_create(ris_device *vk, const char *const *extensions
         RIS_TRY(create_messenger(vk, &messenger, err));
     }
     if (vk->debug_utils) {
-        vk->set_name = (PFN_vkSetDebugUtilsObjectNameEXT)vkGetInstanceProcAddr(vk->instance, "vkSetDebugUtilsObjectNameEXT");
+        vk->set_name = (PFN_vkSetDebugUtilsObjectNameEXT)vkGetInstanceProcAddr(
+            vk->instance, "vkSetDebugUtilsObjectNameEXT");
     }
 fail:
     return result;

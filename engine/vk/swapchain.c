@@ -1,5 +1,6 @@
-/* Presents an offscreen image in a window: acquire, blit, present, rebuild when the size or the surface changed.
- * The source is drawn by engine/draw; nothing is drawn here, so that pictures and windows show the same pixels. */
+/* Presents an offscreen image in a window: acquire, blit, present, rebuild when the size or the surface
+ * changed. The source is drawn by engine/draw; nothing is drawn here, so that pictures and windows show
+ * the same pixels. */
 #include "vk.h"
 
 #include <stdlib.h>
@@ -28,8 +29,8 @@ static ris_result choose_format(ris_device *vk, VkSurfaceKHR surface, VkSurfaceF
     RIS_VK(vkGetPhysicalDeviceSurfaceFormatsKHR(vk->physical, surface, &count, NULL));
     formats = calloc(count ? count : 1, sizeof *formats);
     if (!formats || count == 0) {
-        result = ris_fail(err, formats ? RIS_ERROR_DEVICE : RIS_ERROR_MEMORY, "%s offers %u formats for the window",
-                          vk->info.name, count);
+        result = ris_fail(err, formats ? RIS_ERROR_DEVICE : RIS_ERROR_MEMORY,
+                          "%s offers %u formats for the window", vk->info.name, count);
         goto fail;
     }
     RIS_VK(vkGetPhysicalDeviceSurfaceFormatsKHR(vk->physical, surface, &count, formats));
@@ -62,11 +63,12 @@ static ris_result take_images(ris_vk_swapchain *swapchain, ris_error *err)
 {
     ris_result result = RIS_OK;
     ris_device *vk = swapchain->vk;
-    const VkSemaphoreCreateInfo info = { .sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO };
+    const VkSemaphoreCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO};
     uint32_t count = 0;
     RIS_VK(vkGetSwapchainImagesKHR(vk->handle, swapchain->handle, &count, NULL));
     if (count > IMAGES_MAX) {
-        return ris_fail(err, RIS_ERROR_DEVICE, "swapchain of %u images, at most %d expected", count, IMAGES_MAX);
+        return ris_fail(err, RIS_ERROR_DEVICE, "swapchain of %u images, at most %d expected", count,
+                        IMAGES_MAX);
     }
     RIS_VK(vkGetSwapchainImagesKHR(vk->handle, swapchain->handle, &count, swapchain->image));
     for (uint32_t i = 0; i < count; i++) {
@@ -84,10 +86,14 @@ static ris_result build(ris_vk_swapchain *swapchain, uint32_t width, uint32_t he
     ris_device *vk = swapchain->vk;
     VkSwapchainKHR old = swapchain->handle;
     VkSurfaceCapabilitiesKHR caps;
-    VkSurfaceFormatKHR format = { 0 };
-    VkSwapchainCreateInfoKHR info = { .sType = VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR, .surface = swapchain->surface,
-                                      .imageArrayLayers = 1, .imageUsage = VK_IMAGE_USAGE_TRANSFER_DST_BIT,
-                                      .presentMode = VK_PRESENT_MODE_FIFO_KHR, .clipped = VK_TRUE, .oldSwapchain = old };
+    VkSurfaceFormatKHR format = {0};
+    VkSwapchainCreateInfoKHR info = {.sType = VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR,
+                                     .surface = swapchain->surface,
+                                     .imageArrayLayers = 1,
+                                     .imageUsage = VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+                                     .presentMode = VK_PRESENT_MODE_FIFO_KHR,
+                                     .clipped = VK_TRUE,
+                                     .oldSwapchain = old};
     RIS_VK(vkQueueWaitIdle(vk->queue));
     RIS_VK(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(vk->physical, swapchain->surface, &caps));
     if (!(caps.supportedUsageFlags & VK_IMAGE_USAGE_TRANSFER_DST_BIT)) {
@@ -110,8 +116,9 @@ static ris_result build(ris_vk_swapchain *swapchain, uint32_t width, uint32_t he
     info.imageColorSpace = format.colorSpace;
     info.imageExtent = swapchain->extent;
     info.preTransform = caps.currentTransform;
-    info.compositeAlpha = caps.supportedCompositeAlpha & VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR ? VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR
-                                                                                           : VK_COMPOSITE_ALPHA_INHERIT_BIT_KHR;
+    info.compositeAlpha = caps.supportedCompositeAlpha & VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR
+                              ? VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR
+                              : VK_COMPOSITE_ALPHA_INHERIT_BIT_KHR;
     drop_images(swapchain);
     swapchain->handle = VK_NULL_HANDLE;
     RIS_VK(vkCreateSwapchainKHR(vk->handle, &info, NULL, &swapchain->handle));
@@ -127,7 +134,7 @@ ris_result ris_vk_swapchain_create(ris_device *vk, VkSurfaceKHR surface, uint32_
                                    ris_vk_swapchain **out, ris_error *err)
 {
     ris_result result = RIS_OK;
-    const VkSemaphoreCreateInfo info = { .sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO };
+    const VkSemaphoreCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO};
     VkBool32 supported = VK_FALSE;
     ris_vk_swapchain *swapchain = calloc(1, sizeof *swapchain);
     *out = NULL;
@@ -170,27 +177,28 @@ void ris_vk_swapchain_destroy(ris_vk_swapchain *swapchain)
     free(swapchain);
 }
 
-static void record_blit(ris_vk_swapchain *swapchain, uint32_t index, VkImage source, ris_vk_access from, uint32_t source_width,
-                        uint32_t source_height)
+static void record_blit(ris_vk_swapchain *swapchain, uint32_t index, VkImage source, ris_vk_access from,
+                        uint32_t source_width, uint32_t source_height)
 {
-    const ris_vk_access read = { VK_PIPELINE_STAGE_2_BLIT_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
-                                 VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL };
-    const ris_vk_access fresh = { VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, 0, VK_IMAGE_LAYOUT_UNDEFINED };
-    const ris_vk_access write = { VK_PIPELINE_STAGE_2_BLIT_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                                  VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL };
-    const ris_vk_access shown = { VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, 0, VK_IMAGE_LAYOUT_PRESENT_SRC_KHR };
-    const VkImageSubresourceLayers color = { VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1 };
+    const ris_vk_access read = {VK_PIPELINE_STAGE_2_BLIT_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
+                                VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL};
+    const ris_vk_access fresh = {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, 0, VK_IMAGE_LAYOUT_UNDEFINED};
+    const ris_vk_access write = {VK_PIPELINE_STAGE_2_BLIT_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                                 VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL};
+    const ris_vk_access shown = {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, 0, VK_IMAGE_LAYOUT_PRESENT_SRC_KHR};
+    const VkImageSubresourceLayers color = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
     const VkExtent2D size = swapchain->extent;
-    VkImageBlit blit = { .srcSubresource = color,
-                         .srcOffsets = { { 0, 0, 0 }, { (int32_t)source_width, (int32_t)source_height, 1 } },
-                         .dstSubresource = color,
-                         .dstOffsets = { { 0, 0, 0 }, { (int32_t)size.width, (int32_t)size.height, 1 } } };
+    VkImageBlit blit = {.srcSubresource = color,
+                        .srcOffsets = {{0, 0, 0}, {(int32_t)source_width, (int32_t)source_height, 1}},
+                        .dstSubresource = color,
+                        .dstOffsets = {{0, 0, 0}, {(int32_t)size.width, (int32_t)size.height, 1}}};
     const bool same = source_width == size.width && source_height == size.height;
     VkCommandBuffer cmd = swapchain->cmd.handle;
     ris_vk_image_barrier(cmd, source, VK_IMAGE_ASPECT_COLOR_BIT, from, read);
     ris_vk_image_barrier(cmd, swapchain->image[index], VK_IMAGE_ASPECT_COLOR_BIT, fresh, write);
     vkCmdBlitImage(cmd, source, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, swapchain->image[index],
-                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &blit, same ? VK_FILTER_NEAREST : VK_FILTER_LINEAR);
+                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &blit,
+                   same ? VK_FILTER_NEAREST : VK_FILTER_LINEAR);
     ris_vk_image_barrier(cmd, swapchain->image[index], VK_IMAGE_ASPECT_COLOR_BIT, write, shown);
 }
 
@@ -199,15 +207,19 @@ static bool is_stale(VkResult result)
     return result == VK_ERROR_OUT_OF_DATE_KHR || result == VK_SUBOPTIMAL_KHR;
 }
 
-ris_result ris_vk_swapchain_present(ris_vk_swapchain *swapchain, VkImage source, ris_vk_access from, uint32_t source_width,
-                                    uint32_t source_height, uint32_t width, uint32_t height, ris_error *err)
+ris_result ris_vk_swapchain_present(ris_vk_swapchain *swapchain, VkImage source, ris_vk_access from,
+                                    uint32_t source_width, uint32_t source_height, uint32_t width,
+                                    uint32_t height, ris_error *err)
 {
     ris_result result = RIS_OK;
     ris_device *vk = swapchain->vk;
     VkResult state;
     uint32_t index = 0;
-    VkPresentInfoKHR present = { .sType = VK_STRUCTURE_TYPE_PRESENT_INFO_KHR, .waitSemaphoreCount = 1, .swapchainCount = 1,
-                                 .pSwapchains = &swapchain->handle, .pImageIndices = &index };
+    VkPresentInfoKHR present = {.sType = VK_STRUCTURE_TYPE_PRESENT_INFO_KHR,
+                                .waitSemaphoreCount = 1,
+                                .swapchainCount = 1,
+                                .pSwapchains = &swapchain->handle,
+                                .pImageIndices = &index};
     if (width == 0 || height == 0) {
         return RIS_OK;
     }
@@ -217,7 +229,8 @@ ris_result ris_vk_swapchain_present(ris_vk_swapchain *swapchain, VkImage source,
     if (swapchain->extent.width == 0 || swapchain->extent.height == 0) {
         return RIS_OK;
     }
-    state = vkAcquireNextImageKHR(vk->handle, swapchain->handle, RIS_VK_TIMEOUT_NS, swapchain->acquired, VK_NULL_HANDLE, &index);
+    state = vkAcquireNextImageKHR(vk->handle, swapchain->handle, RIS_VK_TIMEOUT_NS, swapchain->acquired,
+                                  VK_NULL_HANDLE, &index);
     if (state == VK_ERROR_OUT_OF_DATE_KHR) {
         return build(swapchain, width, height, err); /* this frame is skipped, the next is shown */
     }

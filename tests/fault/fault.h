@@ -1,5 +1,5 @@
-/* Makes every RIS_VK call of `run` fail in turn: n = 0, 1, 2 ... until n is beyond the last call. Each failure must give
- * `expected` and a sentence that names the call and `what`; run must free all it made. */
+/* Makes every RIS_VK call of `run` fail in turn: n = 0, 1, 2 ... until n is beyond the last call. Each
+ * failure must give `expected` and a sentence that names the call and `what`; run must free all it made. */
 #pragma once
 
 #include <setjmp.h>
@@ -11,11 +11,12 @@
 
 #include "vk/vk.h"
 
-static inline void fail_each_call(ris_result (*run)(ris_error *), VkResult what, ris_result expected, uint32_t at_least)
+static inline void fail_each_call(ris_result (*run)(ris_error *), VkResult what, ris_result expected,
+                                  uint32_t at_least)
 {
     int64_t n = 0;
     for (;; n++) {
-        ris_error err = { 0 };
+        ris_error err = {0};
         ris_result result;
         ris__vk_fault_set(n, what);
         result = run(&err);

@@ -14,7 +14,7 @@ static ris_sim *sim;
 static ris_result run_draw(ris_error *err)
 {
     static uint8_t pixels[24 * 24 * 4];
-    const ris_draw_def def = { .width = 16, .height = 16 };
+    const ris_draw_def def = {.width = 16, .height = 16};
     ris_camera camera;
     ris_draw *draw = NULL;
     ris_result result = ris_draw_create(vk, model, &def, &draw, err);
@@ -43,9 +43,9 @@ static void drawing_survives_each_failure(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(drawing_survives_each_failure) };
+    const struct CMUnitTest tests[] = {cmocka_unit_test(drawing_survives_each_failure)};
     ris_scene_def def = ris_default_scene_def();
-    ris_error err = { 0 };
+    ris_error err = {0};
     int failed = 1;
     test_gpu_small();
     vk = test_gpu_open();

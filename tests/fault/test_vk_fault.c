@@ -1,6 +1,6 @@
-/* Every Vulkan call of a small simulation fails once: from opening the device to the last read, n = 0, 1, 2 ... until nothing
- * fails any more. Each time the result must be an error of the right code with a sentence that names the call, and everything
- * must be freed (the sanitizer build checks that). */
+/* Every Vulkan call of a small simulation fails once: from opening the device to the last read, n = 0, 1,
+ * 2 ... until nothing fails any more. Each time the result must be an error of the right code with a
+ * sentence that names the call, and everything must be freed (the sanitizer build checks that). */
 #include "fault/fault.h"
 
 #include <stdio.h>
@@ -56,10 +56,16 @@ static ris_result run_sim(ris_error *err)
 static ris_result run_image(ris_error *err)
 {
     static const uint32_t pixels[16 * 8];
-    const ris_vk_image_def def = { 16, 8, VK_FORMAT_R8G8B8A8_UNORM, 0, 0,
-                                   VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
-                                       VK_IMAGE_USAGE_TRANSFER_DST_BIT, 0, "picture" };
-    ris_vk_image image = { 0 };
+    const ris_vk_image_def def = {
+        16,
+        8,
+        VK_FORMAT_R8G8B8A8_UNORM,
+        0,
+        0,
+        VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+        0,
+        "picture"};
+    ris_vk_image image = {0};
     VkSampler sampler = VK_NULL_HANDLE;
     ris_device *vk = NULL;
     ris_result result = open_device(&vk, err);
@@ -97,7 +103,7 @@ static ris_result run_list(ris_error *err)
 
 static void open_shared(void)
 {
-    ris_error err = { 0 };
+    ris_error err = {0};
     if (ris_device_create(NULL, &shared, &err) != RIS_OK) {
         fail_msg("%s", err.text);
     }
@@ -143,7 +149,7 @@ static void loss_is_sticky(void **state)
     static float pose[64];
     ris_device *vk = NULL;
     ris_sim *sim = NULL;
-    ris_error err = { 0 };
+    ris_error err = {0};
     int64_t calls;
     (void)state;
     assert_int_equal(ris_device_create(NULL, &vk, &err), RIS_OK);
@@ -162,12 +168,12 @@ static void loss_is_sticky(void **state)
 
 static void wrong_devices_are_refused(void **state)
 {
-    static const char *const wrong[] = { "9999", "no such device", "18446744073709551616" };
+    static const char *const wrong[] = {"9999", "no such device", "18446744073709551616"};
     (void)state;
     for (size_t k = 0; k < sizeof wrong / sizeof wrong[0]; k++) {
-        const ris_device_def def = { .select = wrong[k] };
+        const ris_device_def def = {.select = wrong[k]};
         ris_device *vk = NULL;
-        ris_error err = { 0 };
+        ris_error err = {0};
         assert_int_equal(ris_device_create(&def, &vk, &err), RIS_ERROR_DEVICE);
         assert_null(vk);
         assert_non_null(strstr(err.text, wrong[k]));
@@ -178,12 +184,12 @@ static void names_and_numbers_choose(void **state)
 {
     ris_device_info info[8];
     uint32_t count = 0;
-    ris_error err = { 0 };
+    ris_error err = {0};
     (void)state;
     assert_int_equal(ris_device_list(info, 8, &count, &err), RIS_OK);
     for (uint32_t i = 0; i < count && i < 8; i++) {
         char number[16];
-        const ris_device_def by_number = { .select = number }, by_name = { .select = info[i].name };
+        const ris_device_def by_number = {.select = number}, by_name = {.select = info[i].name};
         ris_device *vk = NULL;
         snprintf(number, sizeof number, "%u", i);
         if (!info[i].usable) {
@@ -203,9 +209,12 @@ static void names_and_numbers_choose(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(out_of_memory),             cmocka_unit_test(out_of_memory_with_staging),
-        cmocka_unit_test(device_lost),               cmocka_unit_test(loss_is_sticky),
-        cmocka_unit_test(wrong_devices_are_refused), cmocka_unit_test(names_and_numbers_choose),
+        cmocka_unit_test(out_of_memory),
+        cmocka_unit_test(out_of_memory_with_staging),
+        cmocka_unit_test(device_lost),
+        cmocka_unit_test(loss_is_sticky),
+        cmocka_unit_test(wrong_devices_are_refused),
+        cmocka_unit_test(names_and_numbers_choose),
     };
     int failed;
     test_gpu_small();

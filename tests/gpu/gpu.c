@@ -35,12 +35,13 @@ _Noreturn void test_gpu_missing(const char *why)
 ris_device *test_gpu_open(void)
 {
     ris_device *device = NULL;
-    ris_error err = { 0 };
-    const ris_device_def def = { .select = getenv("RIS_DEVICE") };
+    ris_error err = {0};
+    const ris_device_def def = {.select = getenv("RIS_DEVICE")};
     if (ris_device_create(&def, &device, &err) != RIS_OK) {
         test_gpu_missing(err.text);
     }
-    fprintf(stderr, "device: %s, %s\n", ris_device_get_info(device)->name, ris_device_get_info(device)->driver);
+    fprintf(stderr, "device: %s, %s\n", ris_device_get_info(device)->name,
+            ris_device_get_info(device)->driver);
     return device;
 }
 

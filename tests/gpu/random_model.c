@@ -28,7 +28,8 @@ float random_between(uint32_t *seed, float low, float high)
 
 ris_vec4 random_vec(uint32_t *seed, float size, float w)
 {
-    ris_vec4 v = { random_between(seed, -size, size), random_between(seed, -size, size), random_between(seed, -size, size), w };
+    ris_vec4 v = {random_between(seed, -size, size), random_between(seed, -size, size),
+                  random_between(seed, -size, size), w};
     return v;
 }
 
@@ -42,18 +43,20 @@ static void fill_nodes(ris_model *model, uint32_t *seed)
 {
     for (uint32_t i = 0; i < model->node_count; i++) {
         ris_vec4 n = random_vec(seed, 1.0f, 0.0f);
-        const float l = length_between(n, (ris_vec4){ 0 });
+        const float l = length_between(n, (ris_vec4){0});
         const bool is_static = model->node_count > 1 && random_unit(seed) < 0.15f;
         model->moving_count += !is_static;
-        model->rest_position[i] = random_vec(seed, 40.0f, is_static ? 0.0f : random_between(seed, 2.0f, 6.0f));
-        model->rest_normal[i] = (ris_vec4){ n.x / l, n.y / l, n.z / l, 0.0f };
+        model->rest_position[i] =
+            random_vec(seed, 40.0f, is_static ? 0.0f : random_between(seed, 2.0f, 6.0f));
+        model->rest_normal[i] = (ris_vec4){n.x / l, n.y / l, n.z / l, 0.0f};
         if (!is_static) {
-            model->anchor_param[i] = (ris_anchor_param){ random_between(seed, 5.0f, 60.0f), random_between(seed, 5.0f, 60.0f),
-                                                         random_between(seed, 3.0f, 20.0f), random_between(seed, 0.0f, 20.0f) };
+            model->anchor_param[i] =
+                (ris_anchor_param){random_between(seed, 5.0f, 60.0f), random_between(seed, 5.0f, 60.0f),
+                                   random_between(seed, 3.0f, 20.0f), random_between(seed, 0.0f, 20.0f)};
         }
         ((float *)model->jaw_weight)[i] = random_unit(seed);
-        model->bone_anchor[i] = (ris_vec3){ model->rest_position[i].x - 2.0f, model->rest_position[i].y,
-                                            model->rest_position[i].z - 4.0f };
+        model->bone_anchor[i] = (ris_vec3){model->rest_position[i].x - 2.0f, model->rest_position[i].y,
+                                           model->rest_position[i].z - 4.0f};
     }
 }
 
@@ -69,13 +72,13 @@ static void fill_springs(ris_model *model, uint32_t *seed)
             const uint32_t other = (i + 1 + random_word(seed) % (n - 1)) % n;
             const float now = length_between(model->rest_position[i], model->rest_position[other]);
             /* from compressed to far beyond the switch of the biphasic law */
-            model->half_spring[h++] = (ris_half_spring){ other, now * random_between(seed, 0.4f, 1.3f),
-                                                         random_between(seed, 0.2f, 1.2f), random_unit(seed) * 0.2f,
-                                                         random_unit(seed) * 3.0f };
+            model->half_spring[h++] = (ris_half_spring){other, now * random_between(seed, 0.4f, 1.3f),
+                                                        random_between(seed, 0.2f, 1.2f),
+                                                        random_unit(seed) * 0.2f, random_unit(seed) * 3.0f};
         }
         for (uint32_t k = 0; n > 2 && k + 1 < degree; k++) {
             const uint32_t b = (i + 1 + random_word(seed) % (n - 1)) % n;
-            model->ring[t++] = (ris_ring){ b, random_word(seed) % n };
+            model->ring[t++] = (ris_ring){b, random_word(seed) % n};
         }
     }
     model->spring_start[n] = h;
@@ -103,9 +106,9 @@ static bool allocate(ris_model *model)
     model->fiber_point = calloc(1, sizeof *model->fiber_point);
     model->channel_count = ris__beside_channel_count;
     model->channel = calloc(model->channel_count, sizeof *model->channel);
-    return head && model->rest_position && model->spring_start && model->half_spring && model->ring_start && model->ring &&
-           model->anchor_param && model->rest_normal && model->binding_start && model->bone_anchor && model->jaw_weight &&
-           model->fiber_point && model->channel;
+    return head && model->rest_position && model->spring_start && model->half_spring && model->ring_start &&
+           model->ring && model->anchor_param && model->rest_normal && model->binding_start &&
+           model->bone_anchor && model->jaw_weight && model->fiber_point && model->channel;
 }
 
 ris_model *random_model_create(uint32_t node_count, uint32_t flags, uint32_t seed)
@@ -123,8 +126,8 @@ ris_model *random_model_create(uint32_t node_count, uint32_t flags, uint32_t see
     head = (ris_head *)model->head;
     head->tissue = ris_default_tissue();
     head->tissue.substeps = 8;
-    head->jaw = (ris_jaw_def){ .axis = { 1.0f, 0.0f, 0.0f }, .open_deg = 20.0f, .forward_mm = 8.0f, .back_mm = 3.0f,
-                               .side_mm = 6.0f };
+    head->jaw = (ris_jaw_def){
+        .axis = {1.0f, 0.0f, 0.0f}, .open_deg = 20.0f, .forward_mm = 8.0f, .back_mm = 3.0f, .side_mm = 6.0f};
     for (uint32_t c = 0; c < model->channel_count; c++) {
         strncpy(model->channel[c].name, ris__beside_channel[c].name, RIS_NAME_SIZE - 1);
         model->channel[c].minimum = ris__beside_channel[c].minimum;
@@ -133,7 +136,7 @@ ris_model *random_model_create(uint32_t node_count, uint32_t flags, uint32_t see
     fill_nodes(model, &seed);
     fill_springs(model, &seed);
     model->mass_g = 0.25f;
-    model->push = (ris_sim_push){ node_count, flags, 1.0f / 480.0f, 100.0f, 1000.0f, 1.5f, 0.3f, 12.0f };
+    model->push = (ris_sim_push){node_count, flags, 1.0f / 480.0f, 100.0f, 1000.0f, 1.5f, 0.3f, 12.0f};
     model->stable_dt_s = 0.01f;
     return model;
 }

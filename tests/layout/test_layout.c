@@ -1,6 +1,7 @@
-/* Walks the SPIR-V of every simulation stage (built with -g, so that names are in it) and compares member offsets, array
- * strides, bindings and group sizes with the C side of sim_shared.h; and that every float operation is marked NoContraction,
- * without which no device owes us the CPU's bits. Then spoils each of these words in turn, which must be noticed. */
+/* Walks the SPIR-V of every simulation stage (built with -g, so that names are in it) and compares member
+ * offsets, array strides, bindings and group sizes with the C side of sim_shared.h; and that every float
+ * operation is marked NoContraction, without which no device owes us the CPU's bits. Then spoils each of
+ * these words in turn, which must be noticed. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -12,11 +13,31 @@
 
 #include "sim_shared.h"
 
-enum { OP_NAME = 5, OP_MEMBER_NAME = 6, OP_EXECUTION_MODE_ID = 331, OP_CONSTANT = 43, OP_TYPE_RUNTIME_ARRAY = 29, OP_TYPE_STRUCT = 30,
-       OP_TYPE_POINTER = 32, OP_VARIABLE = 59, OP_DECORATE = 71, OP_MEMBER_DECORATE = 72, OP_FADD = 129, OP_FSUB = 131,
-       OP_FMUL = 133, OP_FDIV = 136, OP_VECTOR_TIMES_SCALAR = 142, OP_DOT = 148 };
-enum { DECORATION_ARRAY_STRIDE = 6, DECORATION_BINDING = 33, DECORATION_SET = 34, DECORATION_OFFSET = 35,
-       DECORATION_NO_CONTRACTION = 42 };
+enum {
+    OP_NAME = 5,
+    OP_MEMBER_NAME = 6,
+    OP_EXECUTION_MODE_ID = 331,
+    OP_CONSTANT = 43,
+    OP_TYPE_RUNTIME_ARRAY = 29,
+    OP_TYPE_STRUCT = 30,
+    OP_TYPE_POINTER = 32,
+    OP_VARIABLE = 59,
+    OP_DECORATE = 71,
+    OP_MEMBER_DECORATE = 72,
+    OP_FADD = 129,
+    OP_FSUB = 131,
+    OP_FMUL = 133,
+    OP_FDIV = 136,
+    OP_VECTOR_TIMES_SCALAR = 142,
+    OP_DOT = 148
+};
+enum {
+    DECORATION_ARRAY_STRIDE = 6,
+    DECORATION_BINDING = 33,
+    DECORATION_SET = 34,
+    DECORATION_OFFSET = 35,
+    DECORATION_NO_CONTRACTION = 42
+};
 enum { MODE_LOCAL_SIZE_ID = 38, STORAGE_PUSH_CONSTANT = 9, STORAGE_BUFFER = 12 };
 
 #define MEMBERS 16u
@@ -27,16 +48,31 @@ typedef struct field {
     const char *type, *member;
     uint32_t offset;
 } field;
-#define FIELD(type, member) { #type, #member, (uint32_t)offsetof(type, member) }
+#define FIELD(type, member)                                                                                  \
+    {                                                                                                        \
+#type, #member, (uint32_t)offsetof(type, member)                                                     \
+    }
 static const field fields[] = {
-    FIELD(ris_half_spring, other), FIELD(ris_half_spring, rest_mm), FIELD(ris_half_spring, area_ratio),
-    FIELD(ris_half_spring, bend_out), FIELD(ris_half_spring, bend_in),
-    FIELD(ris_ring, b), FIELD(ris_ring, c),
-    FIELD(ris_anchor_param, normal), FIELD(ris_anchor_param, tangential), FIELD(ris_anchor_param, rest_mm),
+    FIELD(ris_half_spring, other),
+    FIELD(ris_half_spring, rest_mm),
+    FIELD(ris_half_spring, area_ratio),
+    FIELD(ris_half_spring, bend_out),
+    FIELD(ris_half_spring, bend_in),
+    FIELD(ris_ring, b),
+    FIELD(ris_ring, c),
+    FIELD(ris_anchor_param, normal),
+    FIELD(ris_anchor_param, tangential),
+    FIELD(ris_anchor_param, rest_mm),
     FIELD(ris_anchor_param, bend),
-    FIELD(ris_anchor_point, a), FIELD(ris_anchor_point, b),
-    FIELD(ris_sim_push, node_count), FIELD(ris_sim_push, flags), FIELD(ris_sim_push, dt_s), FIELD(ris_sim_push, modulus_low),
-    FIELD(ris_sim_push, modulus_high), FIELD(ris_sim_push, switch_stretch), FIELD(ris_sim_push, compression),
+    FIELD(ris_anchor_point, a),
+    FIELD(ris_anchor_point, b),
+    FIELD(ris_sim_push, node_count),
+    FIELD(ris_sim_push, flags),
+    FIELD(ris_sim_push, dt_s),
+    FIELD(ris_sim_push, modulus_low),
+    FIELD(ris_sim_push, modulus_high),
+    FIELD(ris_sim_push, switch_stretch),
+    FIELD(ris_sim_push, compression),
     FIELD(ris_sim_push, damping_per_s),
 };
 #define FIELD_COUNT (sizeof fields / sizeof fields[0])
@@ -46,20 +82,20 @@ typedef struct block {
     uint32_t binding, stride;
 } block;
 static const block blocks[] = {
-    { "position_block", RIS_BIND_POSITION, sizeof(ris_vec4) },
-    { "rest_block", RIS_BIND_REST, sizeof(ris_vec4) },
-    { "velocity_half_block", RIS_BIND_VELOCITY_HALF, sizeof(ris_vec4) },
-    { "velocity_prev_block", RIS_BIND_VELOCITY_PREV, sizeof(ris_vec4) },
-    { "force_block", RIS_BIND_FORCE, sizeof(ris_vec4) },
-    { "bend_block", RIS_BIND_BEND, sizeof(ris_vec4) },
-    { "normal_block", RIS_BIND_NORMAL, sizeof(ris_vec4) },
-    { "spring_start_block", RIS_BIND_SPRING_START, sizeof(uint32_t) },
-    { "half_spring_block", RIS_BIND_HALF_SPRING, sizeof(ris_half_spring) },
-    { "ring_start_block", RIS_BIND_RING_START, sizeof(uint32_t) },
-    { "ring_block", RIS_BIND_RING, sizeof(ris_ring) },
-    { "anchor_param_block", RIS_BIND_ANCHOR_PARAM, sizeof(ris_anchor_param) },
-    { "anchor_point_block", RIS_BIND_ANCHOR_POINT, sizeof(ris_anchor_point) },
-    { "anchor_delta_block", RIS_BIND_ANCHOR_DELTA, sizeof(ris_vec4) },
+    {"position_block", RIS_BIND_POSITION, sizeof(ris_vec4)},
+    {"rest_block", RIS_BIND_REST, sizeof(ris_vec4)},
+    {"velocity_half_block", RIS_BIND_VELOCITY_HALF, sizeof(ris_vec4)},
+    {"velocity_prev_block", RIS_BIND_VELOCITY_PREV, sizeof(ris_vec4)},
+    {"force_block", RIS_BIND_FORCE, sizeof(ris_vec4)},
+    {"bend_block", RIS_BIND_BEND, sizeof(ris_vec4)},
+    {"normal_block", RIS_BIND_NORMAL, sizeof(ris_vec4)},
+    {"spring_start_block", RIS_BIND_SPRING_START, sizeof(uint32_t)},
+    {"half_spring_block", RIS_BIND_HALF_SPRING, sizeof(ris_half_spring)},
+    {"ring_start_block", RIS_BIND_RING_START, sizeof(uint32_t)},
+    {"ring_block", RIS_BIND_RING, sizeof(ris_ring)},
+    {"anchor_param_block", RIS_BIND_ANCHOR_PARAM, sizeof(ris_anchor_param)},
+    {"anchor_point_block", RIS_BIND_ANCHOR_POINT, sizeof(ris_anchor_point)},
+    {"anchor_delta_block", RIS_BIND_ANCHOR_DELTA, sizeof(ris_vec4)},
 };
 #define BLOCK_COUNT (sizeof blocks / sizeof blocks[0])
 
@@ -68,26 +104,27 @@ static const struct {
     const char *name;
     uint32_t bindings; /* all it declares */
 } stages[] = {
-    { "anchor_shift", BIT(POSITION) | BIT(ANCHOR_DELTA) },
-    { "bend", BIT(POSITION) | BIT(REST) | BIT(BEND) | BIT(SPRING_START) | BIT(HALF_SPRING) },
-    { "spring_force", BIT(POSITION) | BIT(FORCE) | BIT(BEND) | BIT(SPRING_START) | BIT(HALF_SPRING) | BIT(ANCHOR_PARAM) |
-                          BIT(ANCHOR_POINT) },
-    { "verlet", BIT(POSITION) | BIT(VELOCITY_HALF) | BIT(VELOCITY_PREV) | BIT(FORCE) },
-    { "normal", BIT(POSITION) | BIT(NORMAL) | BIT(RING_START) | BIT(RING) },
+    {"anchor_shift", BIT(POSITION) | BIT(ANCHOR_DELTA)},
+    {"bend", BIT(POSITION) | BIT(REST) | BIT(BEND) | BIT(SPRING_START) | BIT(HALF_SPRING)},
+    {"spring_force", BIT(POSITION) | BIT(FORCE) | BIT(BEND) | BIT(SPRING_START) | BIT(HALF_SPRING) |
+                         BIT(ANCHOR_PARAM) | BIT(ANCHOR_POINT)},
+    {"verlet", BIT(POSITION) | BIT(VELOCITY_HALF) | BIT(VELOCITY_PREV) | BIT(FORCE)},
+    {"normal", BIT(POSITION) | BIT(NORMAL) | BIT(RING_START) | BIT(RING)},
 };
 #define STAGE_COUNT (sizeof stages / sizeof stages[0])
 
 /* One id of the module; word numbers (not values) where a control spoils them. */
 typedef struct entry {
     const char *name, *member[MEMBERS];
-    uint32_t opcode, at;            /* of the defining instruction */
+    uint32_t opcode, at; /* of the defining instruction */
     uint32_t offset_at[MEMBERS], stride_at, binding_at, set_at, contraction_at;
 } entry;
 
 typedef struct module {
     uint32_t *words;
-    uint32_t count, bound, local_size_id[3]; /* constants that hold the group size: glslang's form for Vulkan 1.3 */
-    entry *entry; /* (bound) */
+    uint32_t count, bound,
+        local_size_id[3]; /* constants that hold the group size: glslang's form for Vulkan 1.3 */
+    entry *entry;         /* (bound) */
     char error[256];
 } module;
 
@@ -201,8 +238,8 @@ static bool check_struct(module *m, uint32_t id)
             return refuse(m, "member number", fields[f].member, known, known);
         }
         if (!e->offset_at[known] || m->words[e->offset_at[known]] != fields[f].offset) {
-            return refuse(m, "offset", fields[f].member, e->offset_at[known] ? m->words[e->offset_at[known]] : NONE,
-                          fields[f].offset);
+            return refuse(m, "offset", fields[f].member,
+                          e->offset_at[known] ? m->words[e->offset_at[known]] : NONE, fields[f].offset);
         }
         known++;
     }
@@ -222,13 +259,15 @@ static bool check_block(module *m, uint32_t variable, uint32_t struct_id, uint32
         return refuse(m, "known block", s->name, 0, 1);
     }
     if (!v->binding_at || m->words[v->binding_at] != blocks[b].binding) {
-        return refuse(m, "binding", s->name, v->binding_at ? m->words[v->binding_at] : NONE, blocks[b].binding);
+        return refuse(m, "binding", s->name, v->binding_at ? m->words[v->binding_at] : NONE,
+                      blocks[b].binding);
     }
     if (!v->set_at || m->words[v->set_at] != 0) {
         return refuse(m, "set", s->name, v->set_at ? m->words[v->set_at] : NONE, 0);
     }
     if (!array->stride_at || m->words[array->stride_at] != blocks[b].stride) {
-        return refuse(m, "stride", s->name, array->stride_at ? m->words[array->stride_at] : NONE, blocks[b].stride);
+        return refuse(m, "stride", s->name, array->stride_at ? m->words[array->stride_at] : NONE,
+                      blocks[b].stride);
     }
     if (!s->offset_at[0] || m->words[s->offset_at[0]] != 0) {
         return refuse(m, "offset of the array", s->name, NONE, 0);
@@ -272,7 +311,8 @@ static bool check_variables(module *m, uint32_t expected)
 
 static bool is_float_arithmetic(uint32_t op)
 {
-    return op == OP_FADD || op == OP_FSUB || op == OP_FMUL || op == OP_FDIV || (op >= OP_VECTOR_TIMES_SCALAR && op <= OP_DOT);
+    return op == OP_FADD || op == OP_FSUB || op == OP_FMUL || op == OP_FDIV ||
+           (op >= OP_VECTOR_TIMES_SCALAR && op <= OP_DOT);
 }
 
 static bool check_contraction(module *m)
@@ -288,12 +328,13 @@ static bool check_contraction(module *m)
 
 static bool check_module(module *m, uint32_t bindings)
 {
-    static const uint32_t size[3] = { RIS_GROUP_NODE, 1, 1 };
+    static const uint32_t size[3] = {RIS_GROUP_NODE, 1, 1};
     index_module(m);
     for (int k = 0; k < 3; k++) {
         const entry *constant = &m->entry[m->local_size_id[k]];
         if (constant->opcode != OP_CONSTANT || m->words[constant->at + 3] != size[k]) {
-            return refuse(m, "group size", "an axis", constant->opcode == OP_CONSTANT ? m->words[constant->at + 3] : NONE, size[k]);
+            return refuse(m, "group size", "an axis",
+                          constant->opcode == OP_CONSTANT ? m->words[constant->at + 3] : NONE, size[k]);
         }
     }
     return check_variables(m, bindings) && check_contraction(m);

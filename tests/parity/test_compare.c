@@ -1,5 +1,5 @@
-/* The comparison behind `risorius compare`: agrees when it should, and finds every wrong thing it is fed. The wrong things are
- * a third backend that forwards to the CPU and spoils one stage of one tick. */
+/* The comparison behind `risorius compare`: agrees when it should, and finds every wrong thing it is fed.
+ * The wrong things are a third backend that forwards to the CPU and spoils one stage of one tick. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -31,11 +31,11 @@ static void pose(void *user, uint32_t tick, float *out)
 
 typedef struct spoiler {
     ris_sim *inner;
-    ris_stage stage;   /* spoiled stage */
-    uint32_t at;       /* which run of it, from 0 */
-    uint32_t run;      /* so many were made */
+    ris_stage stage; /* spoiled stage */
+    uint32_t at;     /* which run of it, from 0 */
+    uint32_t run;    /* so many were made */
     uint32_t vertex;
-    bool skip;         /* leave the stage out, else flip one bit of its output */
+    bool skip; /* leave the stage out, else flip one bit of its output */
 } spoiler;
 
 static void spoil_destroy(void *self)
@@ -46,8 +46,8 @@ static void spoil_destroy(void *self)
 
 static ris_result spoil_stage(void *self, ris_stage stage, const ris_anchor_frame *anchors, ris_error *err)
 {
-    static const ris_state output[RIS_STAGE_COUNT] = { RIS_STATE_POSITION, RIS_STATE_BEND, RIS_STATE_FORCE, RIS_STATE_POSITION,
-                                                       RIS_STATE_NORMAL };
+    static const ris_state output[RIS_STAGE_COUNT] = {RIS_STATE_POSITION, RIS_STATE_BEND, RIS_STATE_FORCE,
+                                                      RIS_STATE_POSITION, RIS_STATE_NORMAL};
     spoiler *s = self;
     ris_result result;
     ris_vec4 *value;
@@ -73,7 +73,8 @@ static ris_result spoil_stage(void *self, ris_stage stage, const ris_anchor_fram
     return result;
 }
 
-static ris_result spoil_frame(void *self, const ris_anchor_frame *anchors, uint32_t substeps, ris_sim_times *times, ris_error *err)
+static ris_result spoil_frame(void *self, const ris_anchor_frame *anchors, uint32_t substeps,
+                              ris_sim_times *times, ris_error *err)
 {
     ris_result result = spoil_stage(self, RIS_STAGE_ANCHOR_SHIFT, anchors, err);
     (void)times;
@@ -95,14 +96,14 @@ static ris_result spoil_write(void *self, ris_state state, const ris_vec4 *in, r
     return ris_sim_write(((spoiler *)self)->inner, state, in, err);
 }
 
-static const ris_sim_impl spoil_impl = { spoil_destroy, spoil_frame, spoil_stage, spoil_read, spoil_write };
+static const ris_sim_impl spoil_impl = {spoil_destroy, spoil_frame, spoil_stage, spoil_read, spoil_write};
 
 static ris_sim *spoiled_sim(ris_stage stage, uint32_t at, uint32_t vertex, bool skip)
 {
     ris_sim *sim = NULL;
     spoiler *s = calloc(1, sizeof *s);
     assert_non_null(s);
-    *s = (spoiler){ .stage = stage, .at = at, .vertex = vertex, .skip = skip };
+    *s = (spoiler){.stage = stage, .at = at, .vertex = vertex, .skip = skip};
     assert_int_equal(ris_sim_create_cpu(model, &s->inner, NULL), RIS_OK);
     assert_int_equal(ris__sim_create(model, &spoil_impl, s, "spoiled", &sim, NULL), RIS_OK);
     return sim;
@@ -129,7 +130,7 @@ static ris_sim *cpu_sim(void)
 static void cpu_and_device_agree(void **state)
 {
     ris_sim *a = cpu_sim(), *b = NULL;
-    ris_error err = { 0 };
+    ris_error err = {0};
     ris_compare_report report;
     (void)state;
     assert_int_equal(ris_sim_create_vk(model, vk, &b, &err), RIS_OK);
@@ -150,12 +151,13 @@ static void one_flipped_bit_is_named(void **state)
 {
     (void)state;
     for (int stage = 0; stage < RIS_STAGE_COUNT; stage++) {
-        /* the second pass, tick 3: 8 runs a tick for substep stages, after TICKS ticks of the first pass; the spoiler counts
-         * runs of both passes */
+        /* the second pass, tick 3: 8 runs a tick for substep stages, after TICKS ticks of the first pass;
+         * the spoiler counts runs of both passes */
         const bool inner = stage >= RIS_STAGE_BEND && stage <= RIS_STAGE_VERLET;
         const uint32_t a_tick = inner ? 8 : 1;
-        ris_sim *a = cpu_sim(), *b = spoiled_sim((ris_stage)stage, TICKS * a_tick + 2 * a_tick + (inner ? 5 : 0), 777, false);
-        ris_error err = { 0 };
+        ris_sim *a = cpu_sim(),
+                *b = spoiled_sim((ris_stage)stage, TICKS * a_tick + 2 * a_tick + (inner ? 5 : 0), 777, false);
+        ris_error err = {0};
         ris_compare_report report;
         ris_compare_def def = ris_default_compare_def(a, b);
         float size = 1.0f;
@@ -174,13 +176,15 @@ static void one_flipped_bit_is_named(void **state)
     }
 }
 
-/* Also with the tolerance of real devices. Left out in tick 10 of the first pass only: whole ticks and stages disagree. */
+/* Also with the tolerance of real devices. Left out in tick 10 of the first pass only: whole ticks and
+ * stages disagree. */
 static void a_skipped_stage_fails(void **state)
 {
     (void)state;
     for (int stage = RIS_STAGE_ANCHOR_SHIFT; stage <= RIS_STAGE_VERLET; stage++) {
-        ris_sim *a = cpu_sim(), *b = spoiled_sim((ris_stage)stage, stage == RIS_STAGE_ANCHOR_SHIFT ? 9 : 75, 0, true);
-        ris_error err = { 0 };
+        ris_sim *a = cpu_sim(),
+                *b = spoiled_sim((ris_stage)stage, stage == RIS_STAGE_ANCHOR_SHIFT ? 9 : 75, 0, true);
+        ris_error err = {0};
         ris_compare_report report;
         assert_int_equal(compare(a, b, 1.0f, &report, &err), RIS_ERROR_FAILED);
         assert_true(report.differing_ticks > 0);
@@ -192,7 +196,7 @@ static void a_skipped_stage_fails(void **state)
 static void a_device_is_not_compared_with_itself(void **state)
 {
     ris_sim *a = cpu_sim(), *b = cpu_sim();
-    ris_error err = { 0 };
+    ris_error err = {0};
     ris_compare_report report;
     (void)state;
     assert_int_equal(compare(a, b, 1.0f, &report, &err), RIS_ERROR_USAGE);
@@ -205,7 +209,7 @@ static void a_device_is_not_compared_with_itself(void **state)
 static void a_clip_that_moves_too_little_is_refused(void **state)
 {
     ris_sim *a = cpu_sim(), *b = NULL;
-    ris_error err = { 0 };
+    ris_error err = {0};
     ris_compare_report report;
     float size = 1.0f;
     ris_compare_def def;

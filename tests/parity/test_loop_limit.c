@@ -1,6 +1,7 @@
-/* lavapipe stops the loops of an invocation after 65,535 iterations, summed over all its loops, without a word. That is why
- * the substeps of a tick are separate dispatches and why a vertex may have at most 30,000 springs (engine/sim/vk/vk_state.c).
- * This test pins what is known, so that whoever moves a loop into a shader meets it here first. */
+/* lavapipe stops the loops of an invocation after 65,535 iterations, summed over all its loops, without a
+ * word. That is why the substeps of a tick are separate dispatches and why a vertex may have at most
+ * 30,000 springs (engine/sim/vk/vk_state.c). This test pins what is known, so that whoever moves a loop
+ * into a shader meets it here first. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -23,21 +24,24 @@ static ris_device *vk;
 /* Runs the shader with the wanted counts and returns the counts it reached. */
 static loops run(uint32_t first, uint32_t second)
 {
-    ris_error err = { 0 };
+    ris_error err = {0};
     ris_vk_buffer buffer;
     ris_vk_sets sets;
     ris_vk_cmd cmd;
     VkPipelineLayout layout;
     VkPipeline pipeline;
     const VkDescriptorType type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-    loops value = { first, second, 0, 0, 1 };
-    assert_int_equal(ris_vk_buffer_create(vk, RIS_VK_DEVICE, sizeof value, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, "loops", &buffer,
-                                          &err), RIS_OK);
+    loops value = {first, second, 0, 0, 1};
+    assert_int_equal(ris_vk_buffer_create(vk, RIS_VK_DEVICE, sizeof value, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                                          "loops", &buffer, &err),
+                     RIS_OK);
     assert_int_equal(ris_vk_buffer_write(vk, &buffer, 0, &value, sizeof value, &err), RIS_OK);
     assert_int_equal(ris_vk_sets_create(vk, &type, 1, VK_SHADER_STAGE_COMPUTE_BIT, 1, &sets, &err), RIS_OK);
     ris_vk_sets_write_buffer(vk, &sets, 0, 0, buffer.handle, 0, sizeof value);
     assert_int_equal(ris_vk_layout_create(vk, sets.layout, 0, 0, &layout, &err), RIS_OK);
-    assert_int_equal(ris_vk_compute_create(vk, layout, RIS_VK_CODE(ris_spv_loop_limit_comp), "loop_limit", &pipeline, &err), RIS_OK);
+    assert_int_equal(ris_vk_compute_create(vk, layout, RIS_VK_CODE(ris_spv_loop_limit_comp), "loop_limit",
+                                           &pipeline, &err),
+                     RIS_OK);
     assert_int_equal(ris_vk_cmd_create(vk, "loop_limit", &cmd, &err), RIS_OK);
     assert_int_equal(ris_vk_cmd_begin(vk, &cmd, true, &err), RIS_OK);
     vkCmdBindPipeline(cmd.handle, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);

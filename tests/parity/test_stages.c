@@ -1,6 +1,7 @@
-/* Every device stage against its CPU twin: alone on random inputs, then whole ticks. On lavapipe not one bit may differ; on
- * other devices 1e-4 mm (forces as what they move a node by in a substep). Then the controls: each comparator here is fed a
- * wrong input and must fail. With RIS_STAGING=1 the same runs as on a device whose memory the host cannot reach. */
+/* Every device stage against its CPU twin: alone on random inputs, then whole ticks. On lavapipe not one
+ * bit may differ; on other devices 1e-4 mm (forces as what they move a node by in a substep). Then the
+ * controls: each comparator here is fed a wrong input and must fail. With RIS_STAGING=1 the same runs as
+ * on a device whose memory the host cannot reach. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -21,9 +22,10 @@
 
 static ris_device *vk;
 static bool exact;
-static const uint32_t sizes[] = { 1, 63, 64, 65, 1234 };
-static const uint32_t tissues[] = { RIS_TISSUE_FLAG_CONTINUOUS, 0, RIS_TISSUE_FLAG_KAEHLER | RIS_TISSUE_FLAG_CONTINUOUS,
-                                    RIS_TISSUE_FLAG_KAEHLER };
+static const uint32_t sizes[] = {1, 63, 64, 65, 1234};
+static const uint32_t tissues[] = {RIS_TISSUE_FLAG_CONTINUOUS, 0,
+                                   RIS_TISSUE_FLAG_KAEHLER | RIS_TISSUE_FLAG_CONTINUOUS,
+                                   RIS_TISSUE_FLAG_KAEHLER};
 
 /* One model on both sides, and what was read of them last. */
 typedef struct pair {
@@ -36,7 +38,7 @@ typedef struct pair {
 
 static void pair_open(pair *p, const ris_model *model)
 {
-    ris_error err = { 0 };
+    ris_error err = {0};
     const size_t n = model->node_count;
     p->model = model;
     p->a = calloc(n, sizeof *p->a);
@@ -44,7 +46,8 @@ static void pair_open(pair *p, const ris_model *model)
     p->point = calloc(n, sizeof *p->point);
     p->delta = calloc(n, sizeof *p->delta);
     assert_true(p->a && p->b && p->point && p->delta);
-    if (ris_sim_create_cpu(model, &p->cpu, &err) != RIS_OK || ris_sim_create_vk(model, vk, &p->gpu, &err) != RIS_OK) {
+    if (ris_sim_create_cpu(model, &p->cpu, &err) != RIS_OK ||
+        ris_sim_create_vk(model, vk, &p->gpu, &err) != RIS_OK) {
         fail_msg("%s", err.text);
     }
 }
@@ -62,7 +65,7 @@ static void pair_close(pair *p)
 /* Random state near rest on both sides, and random anchors in p. */
 static void randomize(pair *p, uint32_t seed)
 {
-    static const float size[RIS_STATE_COUNT] = { 3.0f, 200.0f, 200.0f, 5000.0f, 2.0f, 1.0f };
+    static const float size[RIS_STATE_COUNT] = {3.0f, 200.0f, 200.0f, 5000.0f, 2.0f, 1.0f};
     const uint32_t n = p->model->node_count;
     for (int s = 0; s < RIS_STATE_COUNT; s++) {
         for (uint32_t i = 0; i < n; i++) {
@@ -83,26 +86,27 @@ static void randomize(pair *p, uint32_t seed)
     }
     for (uint32_t i = 0; i < n; i++) {
         ris_vec4 rest = p->model->rest_position[i], shift = random_vec(&seed, 4.0f, 0.0f);
-        p->point[i].a = (ris_vec4){ rest.x + shift.x, rest.y + shift.y, rest.z + shift.z, 0.0f };
+        p->point[i].a = (ris_vec4){rest.x + shift.x, rest.y + shift.y, rest.z + shift.z, 0.0f};
         p->point[i].b = p->model->push.flags & RIS_TISSUE_FLAG_KAEHLER
-                            ? (ris_vec4){ rest.x - shift.x, rest.y - shift.y, rest.z - shift.z, 0.0f }
+                            ? (ris_vec4){rest.x - shift.x, rest.y - shift.y, rest.z - shift.z, 0.0f}
                             : p->model->rest_normal[i];
         p->delta[i] = random_vec(&seed, 0.5f, 0.0f);
     }
 }
 
-/* First node of a and b that differs (too much), or count; NaN on one side only always differs. unit_mm is what one unit of the
- * value is worth in mm at node i, w gives forces their own. */
+/* First node of a and b that differs (too much), or count; NaN on one side only always differs. unit_mm is
+ * what one unit of the value is worth in mm at node i, w gives forces their own. */
 static uint32_t first_difference(const pair *p, ris_state state, bool bits)
 {
     const double dt = (double)p->model->push.dt_s;
     for (uint32_t i = 0; i < p->model->node_count; i++) {
         const ris_vec4 a = p->a[i], b = p->b[i];
-        const double unit = state == RIS_STATE_FORCE           ? (double)p->model->rest_position[i].w * dt * dt
+        const double unit = state == RIS_STATE_FORCE ? (double)p->model->rest_position[i].w * dt * dt
                             : state == RIS_STATE_VELOCITY_HALF ? dt
                             : state == RIS_STATE_VELOCITY_PREV ? dt
                                                                : 1.0;
-        const double x = (double)a.x - (double)b.x, y = (double)a.y - (double)b.y, z = (double)a.z - (double)b.z;
+        const double x = (double)a.x - (double)b.x, y = (double)a.y - (double)b.y,
+                     z = (double)a.z - (double)b.z;
         if (bits ? memcmp(&a, &b, sizeof a) != 0 : !(sqrt(x * x + y * y + z * z) * unit <= TOLERANCE_MM)) {
             return i;
         }
@@ -120,14 +124,16 @@ static uint32_t read_and_compare(pair *p, ris_state state)
 /* All states, those the stage must leave alone too. */
 static void check_all(pair *p, const char *what)
 {
-    ris_error err = { 0 };
+    ris_error err = {0};
     for (int s = 0; s < RIS_STATE_COUNT; s++) {
         const uint32_t i = read_and_compare(p, (ris_state)s);
         if (i < p->model->node_count) {
-            fail_msg("%s, %u nodes, flags %u: %s of node %u is (%.9g %.9g %.9g %.9g) on the CPU, (%.9g %.9g %.9g %.9g) on %s", what,
-                     p->model->node_count, p->model->push.flags, ris_state_name((ris_state)s), i, (double)p->a[i].x,
-                     (double)p->a[i].y, (double)p->a[i].z, (double)p->a[i].w, (double)p->b[i].x, (double)p->b[i].y,
-                     (double)p->b[i].z, (double)p->b[i].w, ris_sim_backend(p->gpu));
+            fail_msg("%s, %u nodes, flags %u: %s of node %u is (%.9g %.9g %.9g %.9g) on the CPU, (%.9g %.9g "
+                     "%.9g %.9g) on %s",
+                     what, p->model->node_count, p->model->push.flags, ris_state_name((ris_state)s), i,
+                     (double)p->a[i].x, (double)p->a[i].y, (double)p->a[i].z, (double)p->a[i].w,
+                     (double)p->b[i].x, (double)p->b[i].y, (double)p->b[i].z, (double)p->b[i].w,
+                     ris_sim_backend(p->gpu));
         }
     }
     if (ris__vk_sim_check_guards(p->gpu, &err) != RIS_OK) {
@@ -137,14 +143,14 @@ static void check_all(pair *p, const char *what)
 
 static void run_stage(pair *p, ris_stage stage)
 {
-    const ris_anchor_frame anchors = { p->point, p->delta };
+    const ris_anchor_frame anchors = {p->point, p->delta};
     assert_int_equal(ris__sim_stage(p->cpu, stage, &anchors, NULL), RIS_OK);
     assert_int_equal(ris__sim_stage(p->gpu, stage, &anchors, NULL), RIS_OK);
 }
 
 static void check_stages(const ris_model *model, uint32_t seed)
 {
-    pair p = { 0 };
+    pair p = {0};
     pair_open(&p, model);
     for (int stage = 0; stage < RIS_STAGE_COUNT; stage++) {
         randomize(&p, seed + (uint32_t)stage);
@@ -157,16 +163,17 @@ static void check_stages(const ris_model *model, uint32_t seed)
 /* Whole ticks through the recorded frame, with poses from random channel values. */
 static void check_ticks(const ris_model *model, uint32_t ticks, uint32_t seed)
 {
-    pair p = { 0 };
+    pair p = {0};
     float *pose = calloc(model->channel_count, sizeof *pose);
-    ris_error err = { 0 };
+    ris_error err = {0};
     char what[32];
     assert_non_null(pose);
     pair_open(&p, model);
     for (uint32_t t = 1; t <= ticks; t++) {
         for (uint32_t c = 0; c < model->channel_count; c++) {
             float value = random_unit(&seed);
-            pose[c] = model->channel[c].minimum + value * value * (model->channel[c].maximum - model->channel[c].minimum);
+            pose[c] = model->channel[c].minimum +
+                      value * value * (model->channel[c].maximum - model->channel[c].minimum);
         }
         if (ris_sim_tick(p.cpu, pose, &err) != RIS_OK || ris_sim_tick(p.gpu, pose, &err) != RIS_OK) {
             fail_msg("tick %u of %u nodes: %s", t, model->node_count, err.text);
@@ -196,7 +203,7 @@ static void stages_match_on_random_models(void **state)
 static void stages_match_on_the_human_head(void **state)
 {
     ris_model *model = NULL;
-    ris_error err = { 0 };
+    ris_error err = {0};
     FILE *file = fopen(RIS_SOURCE_DIR "/assets/human/head.json", "r");
     (void)state;
     if (!file) {
@@ -245,20 +252,20 @@ static void the_device_repeats_itself(void **state)
 
 static ris_state output_of(ris_stage stage)
 {
-    static const ris_state output[RIS_STAGE_COUNT] = { RIS_STATE_POSITION, RIS_STATE_BEND, RIS_STATE_FORCE, RIS_STATE_POSITION,
-                                                       RIS_STATE_NORMAL };
+    static const ris_state output[RIS_STAGE_COUNT] = {RIS_STATE_POSITION, RIS_STATE_BEND, RIS_STATE_FORCE,
+                                                      RIS_STATE_POSITION, RIS_STATE_NORMAL};
     return output[stage];
 }
 
 static void a_stage_left_out_is_found(void **state)
 {
     ris_model *model = random_model_create(65, RIS_TISSUE_FLAG_CONTINUOUS, 9);
-    pair p = { 0 };
+    pair p = {0};
     (void)state;
     assert_non_null(model);
     pair_open(&p, model);
     for (int stage = 0; stage < RIS_STAGE_COUNT; stage++) {
-        const ris_anchor_frame anchors = { p.point, p.delta };
+        const ris_anchor_frame anchors = {p.point, p.delta};
         randomize(&p, 90 + (uint32_t)stage);
         assert_int_equal(ris__sim_stage(p.cpu, (ris_stage)stage, &anchors, NULL), RIS_OK);
         assert_true(read_and_compare(&p, output_of((ris_stage)stage)) < 65);
@@ -270,7 +277,7 @@ static void a_stage_left_out_is_found(void **state)
 static void a_flipped_bit_is_found(void **state)
 {
     ris_model *model = random_model_create(65, RIS_TISSUE_FLAG_CONTINUOUS, 10);
-    pair p = { 0 };
+    pair p = {0};
     (void)state;
     assert_non_null(model);
     pair_open(&p, model);
@@ -295,11 +302,13 @@ static void a_flipped_bit_is_found(void **state)
 
 static void a_swapped_buffer_is_found(void **state)
 {
-    static const uint32_t swap[RIS_STAGE_COUNT][2] = {
-        { RIS_BIND_ANCHOR_DELTA, RIS_BIND_BEND }, { RIS_BIND_POSITION, RIS_BIND_REST }, { RIS_BIND_POSITION, RIS_BIND_REST },
-        { RIS_BIND_VELOCITY_HALF, RIS_BIND_VELOCITY_PREV }, { RIS_BIND_POSITION, RIS_BIND_REST } };
+    static const uint32_t swap[RIS_STAGE_COUNT][2] = {{RIS_BIND_ANCHOR_DELTA, RIS_BIND_BEND},
+                                                      {RIS_BIND_POSITION, RIS_BIND_REST},
+                                                      {RIS_BIND_POSITION, RIS_BIND_REST},
+                                                      {RIS_BIND_VELOCITY_HALF, RIS_BIND_VELOCITY_PREV},
+                                                      {RIS_BIND_POSITION, RIS_BIND_REST}};
     ris_model *model = random_model_create(65, RIS_TISSUE_FLAG_CONTINUOUS, 11);
-    pair p = { 0 };
+    pair p = {0};
     (void)state;
     assert_non_null(model);
     pair_open(&p, model);
@@ -318,8 +327,8 @@ static void a_swapped_buffer_is_found(void **state)
 static void a_write_past_the_end_is_found(void **state)
 {
     ris_model *model = random_model_create(63, RIS_TISSUE_FLAG_CONTINUOUS, 12);
-    pair p = { 0 };
-    ris_error err = { 0 };
+    pair p = {0};
+    ris_error err = {0};
     (void)state;
     assert_non_null(model);
     pair_open(&p, model);

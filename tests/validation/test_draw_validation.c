@@ -1,5 +1,6 @@
-/* The raster pass under validation and synchronization validation: the reference head with all its parts, an image size that
- * changes, wireframe, and arrays given from outside. Not one message; test_validation proves that messages would be seen. */
+/* The raster pass under validation and synchronization validation: the reference head with all its parts,
+ * an image size that changes, wireframe, and arrays given from outside. Not one message; test_validation
+ * proves that messages would be seen. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -16,9 +17,10 @@ static ris_model *model;
 /* One drawn frame of size x size pixels that is not all one colour. */
 static void draw_frame(ris_draw *draw, ris_sim *sim, uint32_t size, bool outside)
 {
-    ris_error err = { 0 };
+    ris_error err = {0};
     ris_camera camera;
-    ris_vec4 *position = calloc(model->node_count, sizeof *position), *normal = calloc(model->node_count, sizeof *normal);
+    ris_vec4 *position = calloc(model->node_count, sizeof *position),
+             *normal = calloc(model->node_count, sizeof *normal);
     uint8_t *pixels = calloc(size, (size_t)size * 4);
     bool varied = false;
     ris_result result;
@@ -26,7 +28,8 @@ static void draw_frame(ris_draw *draw, ris_sim *sim, uint32_t size, bool outside
     assert_true(ris_camera_named(model, "front", &camera));
     assert_int_equal(ris_sim_read(sim, RIS_STATE_POSITION, position, &err), RIS_OK);
     assert_int_equal(ris_sim_read(sim, RIS_STATE_NORMAL, normal, &err), RIS_OK);
-    result = outside ? ris_draw_frame_at(draw, sim, position, normal, &camera, &err) : ris_draw_frame(draw, sim, &camera, &err);
+    result = outside ? ris_draw_frame_at(draw, sim, position, normal, &camera, &err)
+                     : ris_draw_frame(draw, sim, &camera, &err);
     if (result != RIS_OK || ris_draw_read(draw, pixels, &err) != RIS_OK) {
         fail_msg("%s", err.text);
     }
@@ -41,16 +44,17 @@ static void draw_frame(ris_draw *draw, ris_sim *sim, uint32_t size, bool outside
 
 static void drawing_is_silent(void **state)
 {
-    const ris_draw_def def = { .width = 96, .height = 96 };
-    ris_error err = { 0 };
+    const ris_draw_def def = {.width = 96, .height = 96};
+    ris_error err = {0};
     ris_draw *draw = NULL;
-    ris_sim *sim[2] = { NULL, NULL };
+    ris_sim *sim[2] = {NULL, NULL};
     float *pose = calloc(model->channel_count, sizeof *pose);
     const char *first;
     (void)state;
     assert_non_null(pose);
     pose[ris_model_channel(model, "jaw.open")] = 0.5f;
-    if (ris_sim_create_vk(model, vk, &sim[0], &err) != RIS_OK || ris_sim_create_cpu(model, &sim[1], &err) != RIS_OK ||
+    if (ris_sim_create_vk(model, vk, &sim[0], &err) != RIS_OK ||
+        ris_sim_create_cpu(model, &sim[1], &err) != RIS_OK ||
         ris_draw_create(vk, model, &def, &draw, &err) != RIS_OK) {
         fail_msg("%s", err.text);
     }
@@ -74,8 +78,8 @@ static void drawing_is_silent(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(drawing_is_silent) };
-    ris_error err = { 0 };
+    const struct CMUnitTest tests[] = {cmocka_unit_test(drawing_is_silent)};
+    ris_error err = {0};
     int failed = 1;
     setenv("RIS_VALIDATION", "1", 1);
     vk = test_gpu_open();

@@ -1,5 +1,6 @@
-/* The simulation under the Khronos validation layer with synchronization validation: not one message. Then a missing barrier,
- * a wrong size and a wrong layout, which must each fire, or the silence above means nothing. */
+/* The simulation under the Khronos validation layer with synchronization validation: not one message. Then
+ * a missing barrier, a wrong size and a wrong layout, which must each fire, or the silence above means
+ * nothing. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -32,7 +33,7 @@ static void run_sim(uint32_t flags)
 {
     ris_model *model = random_model_create(200, flags, 31);
     ris_sim *sim = NULL;
-    ris_error err = { 0 };
+    ris_error err = {0};
     ris_vec4 value[200];
     float *pose;
     assert_non_null(model);
@@ -69,13 +70,19 @@ static void the_simulation_is_silent(void **state)
 
 static void images_are_silent(void **state)
 {
-    const ris_vk_image_def def = { 64, 48, VK_FORMAT_R8G8B8A8_SRGB, 0, 0,
-                                   VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
-                                       VK_IMAGE_USAGE_TRANSFER_DST_BIT, 0, "picture" };
+    const ris_vk_image_def def = {
+        64,
+        48,
+        VK_FORMAT_R8G8B8A8_SRGB,
+        0,
+        0,
+        VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+        0,
+        "picture"};
     static uint32_t pixels[64 * 48];
     ris_vk_image image;
     VkSampler sampler;
-    ris_error err = { 0 };
+    ris_error err = {0};
     (void)state;
     assert_int_equal(ris_vk_image_create(vk, &def, &image, &err), RIS_OK);
     assert_int_equal(image.mip_count, 7);
@@ -90,7 +97,7 @@ static void images_are_silent(void **state)
 static uint32_t copy_twice(bool barrier)
 {
     const uint32_t before = messages();
-    const VkBufferCopy copy = { .size = 64 };
+    const VkBufferCopy copy = {.size = 64};
     ris_vk_buffer a, b;
     ris_vk_cmd cmd;
     assert_int_equal(ris_vk_buffer_create(vk, RIS_VK_DEVICE, 64, 0, "a", &a, NULL), RIS_OK);
@@ -99,7 +106,8 @@ static uint32_t copy_twice(bool barrier)
     assert_int_equal(ris_vk_cmd_begin(vk, &cmd, true, NULL), RIS_OK);
     vkCmdCopyBuffer(cmd.handle, a.handle, b.handle, 1, &copy);
     if (barrier) {
-        ris_vk_barrier(cmd.handle, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_COPY_BIT,
+        ris_vk_barrier(cmd.handle, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                       VK_PIPELINE_STAGE_2_COPY_BIT,
                        VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT);
     }
     vkCmdCopyBuffer(cmd.handle, b.handle, a.handle, 1, &copy);
@@ -121,7 +129,7 @@ static void a_missing_barrier_fires(void **state)
 static void a_copy_past_the_end_fires(void **state)
 {
     const uint32_t before = messages();
-    const VkBufferCopy copy = { .size = 128 };
+    const VkBufferCopy copy = {.size = 128};
     ris_vk_buffer a;
     ris_vk_cmd cmd;
     (void)state;

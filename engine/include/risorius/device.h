@@ -17,10 +17,11 @@ typedef struct ris_device_info {
 } ris_device_info;
 
 typedef struct ris_device_def {
-    const char *select;                 /* NULL = first usable, discrete before integrated before cpu; else "INDEX" or part of a name */
+    /* NULL = first usable, discrete before integrated before cpu; else "INDEX" or part of a name */
+    const char *select;
     const char *const *instance_extensions; /* for windows, from the window library */
     uint32_t instance_extension_count;
-    bool present;                       /* needs a swapchain */
+    bool present; /* needs a swapchain */
 } ris_device_def;
 
 /* Lists devices: fills up to capacity and sets *out_count to how many there are. */
@@ -29,9 +30,11 @@ ris_result ris_device_list(ris_device_info *out, uint32_t capacity, uint32_t *ou
 ris_result ris_device_create(const ris_device_def *def, ris_device **out, ris_error *err);
 void ris_device_destroy(ris_device *device);
 const ris_device_info *ris_device_get_info(const ris_device *device);
-/* True when the device was created with RIS_VALIDATION=1 in the environment (validation and synchronization validation). */
+/* True when the device was created with RIS_VALIDATION=1 in the environment (validation and
+ * synchronization validation). */
 bool ris_device_validates(const ris_device *device);
-/* Validation warnings and errors so far; *out_first (may be NULL) is the text of the first, owned by the device. */
+/* Validation warnings and errors so far; *out_first (may be NULL) is the text of the first, owned by the
+ * device. */
 uint32_t ris_device_message_count(const ris_device *device, const char **out_first);
 
 #ifdef __cplusplus

@@ -1,10 +1,11 @@
-/* The simulation on a Vulkan device (KA-11..20, KA-37): the stages of shaders/sim in the order of the frame below.
+/* The simulation on a Vulkan device (KA-11..20, KA-37): the stages of shaders/sim in this order.
  *
  *   upload anchors -> anchor_shift -> [ bend -> spring_force -> verlet ] x substeps -> normal
  *
- * All of it is one command buffer, recorded once and submitted again every tick, with one fence. In place is safe:
- * spring_force reads all positions and writes its own node's force, verlet touches its own node only; a global barrier
- * stands between stages. The substep loop is here and never inside a shader (lavapipe stops long loops silently). */
+ * All of it is one command buffer, recorded once and submitted again every tick, with one fence. In place is
+ * safe: spring_force reads all positions and writes its own node's force, verlet touches its own node only; a
+ * global barrier stands between stages. The substep loop is here and never inside a shader (lavapipe stops
+ * long loops silently). */
 #include "sim/vk/vk_state.h"
 
 #include <stdio.h>
@@ -26,18 +27,19 @@ typedef struct vk_sim {
     vk_state mem;
     VkPipelineLayout layout;
     VkPipeline pipeline[RIS_STAGE_COUNT];
-    ris_vk_cmd frame, single;  /* a whole tick; one stage or one copy */
+    ris_vk_cmd frame, single;   /* a whole tick; one stage or one copy */
     uint32_t recorded_substeps; /* of frame, 0 = none */
     bool timestamps, recorded_timestamps;
-    ris_vk_query query;      /* one per dispatch and one before all */
-    uint8_t *query_stage;    /* stage that ends at each query (query.count) */
-    uint64_t *query_tick;    /* (query.count) */
+    ris_vk_query query;   /* one per dispatch and one before all */
+    uint8_t *query_stage; /* stage that ends at each query (query.count) */
+    uint64_t *query_tick; /* (query.count) */
     uint32_t query_used;
 } vk_sim;
 
 static const VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
 static const VkPipelineStageFlags2 everything = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-static const VkAccessFlags2 shader_access = VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
+static const VkAccessFlags2 shader_access =
+    VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
 static const VkAccessFlags2 any_access = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
 
 static void vk_destroy(void *self)
@@ -65,17 +67,17 @@ static ris_result create_pipelines(vk_sim *sim, ris_error *err)
         const uint32_t *words;
         size_t size;
     } code[RIS_STAGE_COUNT] = {
-        [RIS_STAGE_ANCHOR_SHIFT] = { ris_spv_anchor_shift_comp, sizeof ris_spv_anchor_shift_comp },
-        [RIS_STAGE_BEND] = { ris_spv_bend_comp, sizeof ris_spv_bend_comp },
-        [RIS_STAGE_SPRING_FORCE] = { ris_spv_spring_force_comp, sizeof ris_spv_spring_force_comp },
-        [RIS_STAGE_VERLET] = { ris_spv_verlet_comp, sizeof ris_spv_verlet_comp },
-        [RIS_STAGE_NORMAL] = { ris_spv_normal_comp, sizeof ris_spv_normal_comp },
+        [RIS_STAGE_ANCHOR_SHIFT] = {ris_spv_anchor_shift_comp, sizeof ris_spv_anchor_shift_comp},
+        [RIS_STAGE_BEND] = {ris_spv_bend_comp, sizeof ris_spv_bend_comp},
+        [RIS_STAGE_SPRING_FORCE] = {ris_spv_spring_force_comp, sizeof ris_spv_spring_force_comp},
+        [RIS_STAGE_VERLET] = {ris_spv_verlet_comp, sizeof ris_spv_verlet_comp},
+        [RIS_STAGE_NORMAL] = {ris_spv_normal_comp, sizeof ris_spv_normal_comp},
     };
     ris_result result = RIS_OK;
-    RIS_TRY(ris_vk_layout_create(sim->vk, sim->mem.sets.layout, VK_SHADER_STAGE_COMPUTE_BIT, sizeof(ris_sim_push), &sim->layout,
-                                 err));
+    RIS_TRY(ris_vk_layout_create(sim->vk, sim->mem.sets.layout, VK_SHADER_STAGE_COMPUTE_BIT,
+                                 sizeof(ris_sim_push), &sim->layout, err));
     for (uint32_t s = 0; s < RIS_STAGE_COUNT; s++) {
-        RIS_TRY(ris_vk_compute_create(sim->vk, sim->layout, (ris_vk_code){ code[s].words, code[s].size },
+        RIS_TRY(ris_vk_compute_create(sim->vk, sim->layout, (ris_vk_code){code[s].words, code[s].size},
                                       ris_stage_name((ris_stage)s), &sim->pipeline[s], err));
     }
 fail:
@@ -89,12 +91,15 @@ static void record_start(const vk_sim *sim, VkCommandBuffer cmd)
     /* whatever read or wrote the state before (the raster pass, copies) is done */
     ris_vk_barrier(cmd, everything, any_access, compute | VK_PIPELINE_STAGE_2_COPY_BIT, any_access);
     if (sim->mem.anchor_device.handle) {
-        VkBufferCopy copy = { .size = sim->mem.anchor_device.size };
+        VkBufferCopy copy = {.size = sim->mem.anchor_device.size};
         vkCmdCopyBuffer(cmd, sim->mem.anchor.handle, sim->mem.anchor_device.handle, 1, &copy);
-        ris_vk_barrier(cmd, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, compute, shader_access);
+        ris_vk_barrier(cmd, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, compute,
+                       shader_access);
     }
-    vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, sim->layout, 0, 1, sim->mem.sets.set, 0, NULL);
-    vkCmdPushConstants(cmd, sim->layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof sim->model->push, &sim->model->push);
+    vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, sim->layout, 0, 1, sim->mem.sets.set, 0,
+                            NULL);
+    vkCmdPushConstants(cmd, sim->layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof sim->model->push,
+                       &sim->model->push);
 }
 
 static void record_stage(const vk_sim *sim, VkCommandBuffer cmd, ris_stage stage)
@@ -110,8 +115,8 @@ static void record_between(VkCommandBuffer cmd)
 
 static void record_end(VkCommandBuffer cmd)
 {
-    ris_vk_barrier(cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, everything | VK_PIPELINE_STAGE_2_HOST_BIT,
-                   any_access | VK_ACCESS_2_HOST_READ_BIT);
+    ris_vk_barrier(cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
+                   everything | VK_PIPELINE_STAGE_2_HOST_BIT, any_access | VK_ACCESS_2_HOST_READ_BIT);
 }
 
 /* The stages of a tick in order; returns how many. list holds 3 x substeps + 2. */
@@ -192,8 +197,10 @@ static ris_result upload(vk_sim *sim, const ris_anchor_frame *anchors, ris_error
     const vk_state *mem = &sim->mem;
     char *data = mem->anchor.data;
     /* both buffers hold the same arrays at the same offsets */
-    memcpy(data + mem->range[RIS_BIND_ANCHOR_POINT].offset, anchors->point, (size_t)mem->range[RIS_BIND_ANCHOR_POINT].size);
-    memcpy(data + mem->range[RIS_BIND_ANCHOR_DELTA].offset, anchors->delta, (size_t)mem->range[RIS_BIND_ANCHOR_DELTA].size);
+    memcpy(data + mem->range[RIS_BIND_ANCHOR_POINT].offset, anchors->point,
+           (size_t)mem->range[RIS_BIND_ANCHOR_POINT].size);
+    memcpy(data + mem->range[RIS_BIND_ANCHOR_DELTA].offset, anchors->delta,
+           (size_t)mem->range[RIS_BIND_ANCHOR_DELTA].size);
     return ris_vk_buffer_flush(sim->vk, &mem->anchor, err);
 }
 
@@ -215,7 +222,8 @@ fail:
     return result;
 }
 
-static ris_result vk_frame(void *self, const ris_anchor_frame *anchors, uint32_t substeps, ris_sim_times *times, ris_error *err)
+static ris_result vk_frame(void *self, const ris_anchor_frame *anchors, uint32_t substeps,
+                           ris_sim_times *times, ris_error *err)
 {
     vk_sim *sim = self;
     ris_result result = RIS_OK;
@@ -257,11 +265,12 @@ static ris_result vk_read(void *self, ris_state state, ris_vec4 *out, ris_error 
     ris_result result = RIS_OK;
     const vk_range *range = &sim->mem.range[ris__vk_state_binding(state)];
     const ris_vk_buffer *source = &sim->mem.state;
-    VkBufferCopy copy = { .srcOffset = range->offset, .size = range->size };
+    VkBufferCopy copy = {.srcOffset = range->offset, .size = range->size};
     VkDeviceSize offset = range->offset;
     if (sim->mem.readback.handle) {
         RIS_TRY(ris_vk_cmd_begin(sim->vk, &sim->single, true, err));
-        ris_vk_barrier(sim->single.handle, everything, any_access, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT);
+        ris_vk_barrier(sim->single.handle, everything, any_access, VK_PIPELINE_STAGE_2_COPY_BIT,
+                       VK_ACCESS_2_TRANSFER_READ_BIT);
         vkCmdCopyBuffer(sim->single.handle, sim->mem.state.handle, sim->mem.readback.handle, 1, &copy);
         ris_vk_barrier(sim->single.handle, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                        VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
@@ -282,7 +291,7 @@ static ris_result vk_write(void *self, ris_state state, const ris_vec4 *in, ris_
     return ris_vk_buffer_write(sim->vk, &sim->mem.state, range->offset, in, range->size, err);
 }
 
-static const ris_sim_impl vk_impl = { vk_destroy, vk_frame, vk_stage, vk_read, vk_write };
+static const ris_sim_impl vk_impl = {vk_destroy, vk_frame, vk_stage, vk_read, vk_write};
 
 ris_result ris_sim_create_vk(const ris_model *model, struct ris_device *device, ris_sim **out, ris_error *err)
 {
@@ -338,13 +347,15 @@ ris_result ris__vk_sim_check_guards(ris_sim *front, ris_error *err)
     for (uint32_t b = 0; b < RIS_BIND_COUNT; b++) {
         const vk_range *range = &sim->mem.range[b];
         ris_vk_buffer buffer = *range->buffer;
-        ris_result result = ris_vk_buffer_read(sim->vk, &buffer, range->offset + range->size, guard, sizeof guard, err);
+        ris_result result =
+            ris_vk_buffer_read(sim->vk, &buffer, range->offset + range->size, guard, sizeof guard, err);
         if (result != RIS_OK) {
             return result;
         }
         for (uint32_t w = 0; w < RIS__VK_GUARD / sizeof(uint32_t); w++) {
             if (guard[w] != RIS__VK_SENTINEL) {
-                return ris_fail(err, RIS_ERROR_FAILED, "word %u behind the array of binding %u is 0x%08x", w, b, guard[w]);
+                return ris_fail(err, RIS_ERROR_FAILED, "word %u behind the array of binding %u is 0x%08x", w,
+                                b, guard[w]);
             }
         }
     }
@@ -366,8 +377,10 @@ ris_result ris__vk_sim_swap_bindings(ris_sim *front, uint32_t a, uint32_t b, ris
     if (a >= RIS_BIND_COUNT || b >= RIS_BIND_COUNT) {
         return ris_fail(err, RIS_ERROR_FAILED, "bindings %u and %u, expected below %d", a, b, RIS_BIND_COUNT);
     }
-    ris_vk_sets_write_buffer(sim->vk, &sim->mem.sets, 0, a, second.buffer->handle, second.offset, second.size + RIS__VK_GUARD);
-    ris_vk_sets_write_buffer(sim->vk, &sim->mem.sets, 0, b, first.buffer->handle, first.offset, first.size + RIS__VK_GUARD);
+    ris_vk_sets_write_buffer(sim->vk, &sim->mem.sets, 0, a, second.buffer->handle, second.offset,
+                             second.size + RIS__VK_GUARD);
+    ris_vk_sets_write_buffer(sim->vk, &sim->mem.sets, 0, b, first.buffer->handle, first.offset,
+                             first.size + RIS__VK_GUARD);
     sim->recorded_substeps = 0; /* the recorded frame holds the old set */
     return RIS_OK;
 }

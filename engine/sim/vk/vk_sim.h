@@ -4,13 +4,13 @@
 #include "risorius/sim.h"
 #include "vk/vk.h"
 
-/* Device buffers of a Vulkan simulation. Valid until the sim is destroyed; between ticks all writes are visible to every
- * later command and to host reads. */
+/* Device buffers of a Vulkan simulation. Valid until the sim is destroyed; between ticks all writes are
+ * visible to every later command and to host reads. */
 typedef struct ris_vk_sim_view {
     ris_device *device;
-    VkBuffer buffer;                              /* one buffer holds all state */
-    VkDeviceSize position_offset, normal_offset;  /* of ris_vec4 arrays (node_count), 64-byte aligned */
-    VkDeviceSize array_size;                      /* bytes of one array: node_count x 16 */
+    VkBuffer buffer;                             /* one buffer holds all state */
+    VkDeviceSize position_offset, normal_offset; /* of ris_vec4 arrays (node_count), 64-byte aligned */
+    VkDeviceSize array_size;                     /* bytes of one array: node_count x 16 */
 } ris_vk_sim_view;
 
 /* False if sim does not run on Vulkan. */
@@ -21,8 +21,8 @@ void ris_vk_sim_set_timestamps(ris_sim *sim, bool on);
 
 /* ---- for tests ---- */
 
-/* Every array of the simulation is followed by this many bytes of RIS__VK_SENTINEL words, inside the descriptor's range, so
- * that a stage that writes past its end is seen. */
+/* Every array of the simulation is followed by this many bytes of RIS__VK_SENTINEL words, inside the
+ * descriptor's range, so that a stage that writes past its end is seen. */
 #define RIS__VK_GUARD 64
 #define RIS__VK_SENTINEL 0x51a7e5edu
 

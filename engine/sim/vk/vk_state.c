@@ -3,21 +3,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Longest gather of one invocation: lavapipe silently stops loops after 65,535 iterations in all (tests/parity pins it). */
+/* Longest gather of one invocation: lavapipe silently stops loops after 65,535 iterations in all
+ * (tests/parity pins it). */
 #define GATHER_MAX 30000u
 
-static const uint32_t state_bindings[] = { RIS_BIND_POSITION, RIS_BIND_VELOCITY_HALF, RIS_BIND_VELOCITY_PREV,
-                                           RIS_BIND_FORCE,    RIS_BIND_BEND,          RIS_BIND_NORMAL };
-static const uint32_t table_bindings[] = { RIS_BIND_REST,       RIS_BIND_SPRING_START, RIS_BIND_HALF_SPRING,
-                                           RIS_BIND_RING_START, RIS_BIND_RING,         RIS_BIND_ANCHOR_PARAM };
-static const uint32_t anchor_bindings[] = { RIS_BIND_ANCHOR_POINT, RIS_BIND_ANCHOR_DELTA };
+static const uint32_t state_bindings[] = {RIS_BIND_POSITION, RIS_BIND_VELOCITY_HALF, RIS_BIND_VELOCITY_PREV,
+                                          RIS_BIND_FORCE,    RIS_BIND_BEND,          RIS_BIND_NORMAL};
+static const uint32_t table_bindings[] = {RIS_BIND_REST,       RIS_BIND_SPRING_START, RIS_BIND_HALF_SPRING,
+                                          RIS_BIND_RING_START, RIS_BIND_RING,         RIS_BIND_ANCHOR_PARAM};
+static const uint32_t anchor_bindings[] = {RIS_BIND_ANCHOR_POINT, RIS_BIND_ANCHOR_DELTA};
 
 _Static_assert(sizeof(ris_vec4) == 16 && sizeof(ris_half_spring) == 20 && sizeof(ris_ring) == 8 &&
                    sizeof(ris_anchor_param) == 16 && sizeof(ris_anchor_point) == 32,
                "scalar layout");
 _Static_assert(sizeof(ris_sim_push) <= 128, "push constants");
 _Static_assert(sizeof state_bindings / sizeof(uint32_t) + sizeof table_bindings / sizeof(uint32_t) +
-                       sizeof anchor_bindings / sizeof(uint32_t) == RIS_BIND_COUNT,
+                       sizeof anchor_bindings / sizeof(uint32_t) ==
+                   RIS_BIND_COUNT,
                "every binding belongs to one buffer");
 
 uint32_t ris__vk_state_binding(ris_state state)
@@ -43,9 +45,13 @@ static const void *initial(const ris_model *model, uint32_t binding, VkDeviceSiz
     case RIS_BIND_REST: *out_size = nodes * sizeof(ris_vec4); return model->rest_position;
     case RIS_BIND_NORMAL: *out_size = nodes * sizeof(ris_vec4); return model->rest_normal;
     case RIS_BIND_SPRING_START: *out_size = (nodes + 1) * sizeof(uint32_t); return model->spring_start;
-    case RIS_BIND_HALF_SPRING: *out_size = model->half_spring_count * sizeof(ris_half_spring); return model->half_spring;
+    case RIS_BIND_HALF_SPRING:
+        *out_size = model->half_spring_count * sizeof(ris_half_spring);
+        return model->half_spring;
     case RIS_BIND_RING_START: *out_size = (nodes + 1) * sizeof(uint32_t); return model->ring_start;
-    case RIS_BIND_RING: *out_size = 3 * (VkDeviceSize)model->triangle_count * sizeof(ris_ring); return model->ring;
+    case RIS_BIND_RING:
+        *out_size = 3 * (VkDeviceSize)model->triangle_count * sizeof(ris_ring);
+        return model->ring;
     case RIS_BIND_ANCHOR_PARAM: *out_size = nodes * sizeof(ris_anchor_param); return model->anchor_param;
     case RIS_BIND_ANCHOR_POINT: *out_size = nodes * sizeof(ris_anchor_point); return NULL;
     default: *out_size = nodes * sizeof(ris_vec4); return NULL;
@@ -59,14 +65,17 @@ static ris_result check_model(const ris_device *vk, const ris_model *model, ris_
         return ris_fail(err, RIS_ERROR_DATA, "a model without vertices cannot be simulated");
     }
     if (groups > vk->properties.limits.maxComputeWorkGroupCount[0]) {
-        return ris_fail(err, RIS_ERROR_DATA, "%u vertices, at most %llu can be simulated on %s", model->node_count,
-                        (unsigned long long)vk->properties.limits.maxComputeWorkGroupCount[0] * RIS_GROUP_NODE, vk->info.name);
+        return ris_fail(
+            err, RIS_ERROR_DATA, "%u vertices, at most %llu can be simulated on %s", model->node_count,
+            (unsigned long long)vk->properties.limits.maxComputeWorkGroupCount[0] * RIS_GROUP_NODE,
+            vk->info.name);
     }
     for (uint32_t i = 0; i < model->node_count; i++) {
         uint32_t springs = model->spring_start[i + 1] - model->spring_start[i];
         uint32_t faces = model->ring_start[i + 1] - model->ring_start[i];
         if (springs > GATHER_MAX || faces > GATHER_MAX) {
-            return ris_fail(err, RIS_ERROR_DATA, "vertex %u has %u springs and %u triangles, expected at most %u", i, springs,
+            return ris_fail(err, RIS_ERROR_DATA,
+                            "vertex %u has %u springs and %u triangles, expected at most %u", i, springs,
                             faces, GATHER_MAX);
         }
     }
@@ -74,8 +83,9 @@ static ris_result check_model(const ris_device *vk, const ris_model *model, ris_
 }
 
 /* Allocates one buffer for the listed arrays, each with its guard, and fills it from the model. */
-static ris_result fill_buffer(ris_device *vk, const ris_model *model, ris_vk_use use, const uint32_t *bindings, uint32_t count,
-                              const char *name, vk_state *state, ris_vk_buffer *out, ris_error *err)
+static ris_result fill_buffer(ris_device *vk, const ris_model *model, ris_vk_use use,
+                              const uint32_t *bindings, uint32_t count, const char *name, vk_state *state,
+                              ris_vk_buffer *out, ris_error *err)
 {
     ris_result result = RIS_OK;
     VkDeviceSize size = 0;
@@ -88,12 +98,14 @@ static ris_result fill_buffer(ris_device *vk, const ris_model *model, ris_vk_use
         range->offset = ris_vk_range(vk, &size, range->size + RIS__VK_GUARD);
         if (range->size + RIS__VK_GUARD > vk->properties.limits.maxStorageBufferRange) {
             return ris_fail(err, RIS_ERROR_DATA, "%s array of %llu bytes, at most %u fit on %s", name,
-                            (unsigned long long)range->size, vk->properties.limits.maxStorageBufferRange, vk->info.name);
+                            (unsigned long long)range->size, vk->properties.limits.maxStorageBufferRange,
+                            vk->info.name);
         }
     }
     bytes = calloc(1, (size_t)size);
     if (!bytes) {
-        return ris_fail(err, RIS_ERROR_MEMORY, "no memory for %llu bytes of %s", (unsigned long long)size, name);
+        return ris_fail(err, RIS_ERROR_MEMORY, "no memory for %llu bytes of %s", (unsigned long long)size,
+                        name);
     }
     for (uint32_t k = 0; k < count; k++) {
         const vk_range *range = &state->range[bindings[k]];
@@ -119,7 +131,8 @@ static ris_result create_anchor_copy(ris_device *vk, const ris_model *model, vk_
     if (state->anchor.device_local) {
         return RIS_OK;
     }
-    return fill_buffer(vk, model, RIS_VK_DEVICE, anchor_bindings, 2, "sim anchor copy", state, &state->anchor_device, err);
+    return fill_buffer(vk, model, RIS_VK_DEVICE, anchor_bindings, 2, "sim anchor copy", state,
+                       &state->anchor_device, err);
 }
 
 ris_result ris__vk_state_create(ris_device *vk, const ris_model *model, vk_state *out, ris_error *err)
@@ -133,8 +146,8 @@ ris_result ris__vk_state_create(ris_device *vk, const ris_model *model, vk_state
     RIS_TRY(fill_buffer(vk, model, RIS_VK_UPLOAD, anchor_bindings, 2, "sim anchor", out, &out->anchor, err));
     RIS_TRY(create_anchor_copy(vk, model, out, err));
     if (!out->state.data || !out->state.cached) {
-        RIS_TRY(ris_vk_buffer_create(vk, RIS_VK_READBACK, out->range[RIS_BIND_POSITION].size, 0, "sim readback", &out->readback,
-                                     err));
+        RIS_TRY(ris_vk_buffer_create(vk, RIS_VK_READBACK, out->range[RIS_BIND_POSITION].size, 0,
+                                     "sim readback", &out->readback, err));
     }
     for (uint32_t b = 0; b < RIS_BIND_COUNT; b++) {
         type[b] = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
@@ -142,7 +155,8 @@ ris_result ris__vk_state_create(ris_device *vk, const ris_model *model, vk_state
     RIS_TRY(ris_vk_sets_create(vk, type, RIS_BIND_COUNT, VK_SHADER_STAGE_COMPUTE_BIT, 1, &out->sets, err));
     for (uint32_t b = 0; b < RIS_BIND_COUNT; b++) {
         const vk_range *range = &out->range[b];
-        ris_vk_sets_write_buffer(vk, &out->sets, 0, b, range->buffer->handle, range->offset, range->size + RIS__VK_GUARD);
+        ris_vk_sets_write_buffer(vk, &out->sets, 0, b, range->buffer->handle, range->offset,
+                                 range->size + RIS__VK_GUARD);
     }
     return RIS_OK;
 fail:
