@@ -1,5 +1,5 @@
-/* The texture painter on the reference head: same bytes every time, colours in the order of real faces, no texel of a UV
- * island left out, refusals. */
+/* The texture painter on the reference head: same bytes every time, colours in the order of real faces, no
+ * texel of a UV island left out, refusals. */
 #include "paint.h"
 
 #include "scratch.h"

@@ -1,5 +1,5 @@
-/* Rasterises the mesh in UV space and paints every texel from its place in 3D; spreads the colour beyond the seams, so
- * that filtering does not pull the background in. */
+/* Rasterises the mesh in UV space and paints every texel from its place in 3D; spreads the colour beyond
+ * the seams, so that filtering does not pull the background in. */
 #include "paint.h"
 
 #include <math.h>

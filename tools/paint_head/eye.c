@@ -1,5 +1,5 @@
-/* The eye: iris of radial fibres round a collarette, dark limbal ring, warm sclera with faint veins. Azimuthal layout:
- * the distance from the image centre is proportional to the angle from the corneal pole. */
+/* The eye: iris of radial fibres round a collarette, dark limbal ring, warm sclera with faint veins.
+ * Azimuthal layout: the distance from the image centre is proportional to the angle from the corneal pole. */
 #include "paint.h"
 
 #include <math.h>
@@ -80,8 +80,9 @@ ris_result ris_paint_eye_image(const ris_paint_eye *eye, uint32_t size, ris_pain
     const float pupil = asinf(eye->pupil_radius_mm / eye->ball_radius_mm);
     const float soft = pi * 1.5f / (float)size; /* 1.5 texels */
     for (uint32_t i = 0; i < size * size; i++) {
-        const float u = ((float)(i % size) + 0.5f) / (float)size - 0.5f,
-                    v = 0.5f - ((float)(i / size) + 0.5f) / (float)size;
+        const uint32_t column = i % size, row = i / size;
+        const float u = ((float)column + 0.5f) / (float)size - 0.5f;
+        const float v = 0.5f - ((float)row + 0.5f) / (float)size;
         const float angle = 2 * pi * sqrtf(u * u + v * v), turn = atan2f(v, u);
         const float flat = fminf(angle, pi);
         const ris_vec3 direction = vec3(sinf(flat) * cosf(turn), sinf(flat) * sinf(turn), cosf(flat));

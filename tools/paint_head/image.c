@@ -1,23 +1,10 @@
 /* Images of the painter: sRGB bytes and PNG files. */
-#define STB_IMAGE_WRITE_IMPLEMENTATION
-#define STB_IMAGE_WRITE_STATIC
 #include "paint.h"
 
-#include "base/file.h"
+#include "risorius/output.h"
 
 #include <math.h>
 #include <stdlib.h>
-
-#if defined(__GNUC__)
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
-#pragma GCC diagnostic ignored "-Wunused-function"
-#pragma GCC diagnostic ignored "-Wsign-compare"
-#endif
-#include <stb/stb_image_write.h>
-#if defined(__GNUC__)
-#pragma GCC diagnostic pop
-#endif
 
 ris_result ris_paint_image_init(ris_paint_image *image, uint32_t width, uint32_t height, ris_error *err)
 {
@@ -52,13 +39,13 @@ float ris_paint_decode(float byte)
 
 ris_result ris_paint_image_save(const ris_paint_image *image, const char *path, ris_error *err)
 {
-    const int width = (int)image->width, height = (int)image->height;
-    int size = 0;
-    stbi_write_png_compression_level = 12;
-    unsigned char *bytes = stbi_write_png_to_mem(image->rgb, width * 3, width, height, 3, &size);
-    if (!bytes)
+    const size_t texels = (size_t)image->width * image->height;
+    uint8_t *rgba = malloc(texels * 4);
+    if (!rgba)
         return ris_fail(err, RIS_ERROR_MEMORY, "%s: no memory to write the image", path);
-    const ris_result result = ris__file_write(path, bytes, (size_t)size, err);
-    STBIW_FREE(bytes);
+    for (size_t i = 0; i < 4 * texels; i++)
+        rgba[i] = i % 4 == 3 ? 255 : image->rgb[i / 4 * 3 + i % 4];
+    const ris_result result = ris_png_write(path, rgba, image->width, image->height, err);
+    free(rgba);
     return result;
 }

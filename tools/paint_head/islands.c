@@ -1,6 +1,7 @@
-/* Finds the parts of a face from its UV islands: the largest is the face itself, the one behind the lips the mouth,
- * those behind the lids the eye sockets. Edge loops counted out from the shared seams then follow lips and lids as the
- * modeller laid them: the vermilion border, the lid rims and the lid folds are such loops. */
+/* Finds the parts of a face from its UV islands: the largest is the face itself, the one behind the lips
+ * the mouth, those behind the lids the eye sockets. Edge loops counted out from the shared seams then
+ * follow lips and lids as the modeller laid them: the vermilion border, the lid rims and the lid folds are
+ * such loops. */
 #include "paint.h"
 
 #include <math.h>
@@ -71,7 +72,8 @@ static ris_paint_shell classify(const island *face, const island *other)
     return fabsf(d.x) > 15 && fabsf(d.x) < 60 ? RIS_SHELL_SOCKET : RIS_SHELL_OTHER;
 }
 
-/* Counts edge loops from the vertices that both shells touch: upwards over the face, downwards behind the seam. */
+/* Counts edge loops from the vertices that both shells touch: upwards over the face, downwards behind the
+ * seam. */
 static void count_rings(const ris_paint_surface *surface, ris_paint_shell inner, float *ring)
 {
     const uint32_t count = surface->mesh->vertex_count;

@@ -1,12 +1,13 @@
-/* Teeth, gums and tongue. Teeth and gums run along u from the subject's right to the left; the teeth's v goes from the gum
- * line (0) to the cutting edge (1). */
+/* Teeth, gums and tongue. Teeth and gums run along u from the subject's right to the left; the teeth's v
+ * goes from the gum line (0) to the cutting edge (1). */
 #include "paint.h"
 
 #include <math.h>
 
 static ris_vec3 texel_at(uint32_t i, uint32_t size)
 {
-    return vec3(((float)(i % size) + 0.5f) / (float)size, 1 - ((float)(i / size) + 0.5f) / (float)size, 0);
+    const uint32_t column = i % size, row = i / size;
+    return vec3(((float)column + 0.5f) / (float)size, 1 - ((float)row + 0.5f) / (float)size, 0);
 }
 
 static void put(ris_paint_image *image, uint32_t i, const float color[3])

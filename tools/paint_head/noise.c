@@ -1,4 +1,5 @@
-/* Noise of the painter: gradient and cellular noise over integer hashes, so that textures are the same everywhere. */
+/* Noise of the painter: gradient and cellular noise over integer hashes, so that textures are the same
+ * everywhere. */
 #include "paint.h"
 
 #include <math.h>

@@ -1,5 +1,6 @@
-/* Ray casting on the head: how much sky a vertex sees (ambient occlusion) and how thin the tissue behind it is.
- * A bounding-volume tree split at the median of the longest axis; rays go in fixed spiral directions. */
+/* Ray casting on the head: how much sky a vertex sees (ambient occlusion) and how thin the tissue behind
+ * it is. A bounding-volume tree split at the median of the longest axis; rays go in fixed spiral
+ * directions. */
 #include "paint.h"
 
 #include <math.h>
@@ -40,7 +41,8 @@ static void fit_box(const ris_paint_tree *tree, tree_node *node)
     }
 }
 
-/* Puts the middle element by centre along the axis in its place (quickselect; ties by index, so the order is fixed). */
+/* Puts the middle element by centre along the axis in its place (quickselect; ties by index, so the order
+ * is fixed). */
 static void select_median(const ris_paint_tree *tree, uint32_t first, uint32_t count, int axis)
 {
     uint32_t low = first, high = first + count - 1;
@@ -172,7 +174,8 @@ float ris_paint_tree_cast(const ris_paint_tree *tree, ris_vec3 origin, ris_vec3 
     return limit;
 }
 
-/* The i-th of n directions in the hemisphere around the unit normal, cosine-weighted when power is 1, narrower below. */
+/* The i-th of n directions in the hemisphere around the unit normal, cosine-weighted when power is 1,
+ * narrower below. */
 static ris_vec3 spiral(ris_vec3 normal, uint32_t i, uint32_t n, float power)
 {
     const float square = ((float)i + 0.5f) / (float)n * power, turn = 2.3999632f * (float)i;

@@ -49,7 +49,8 @@ uint32_t ris_paint_hash(int32_t x, int32_t y, int32_t z, uint32_t seed);
 float ris_paint_noise(ris_vec3 p, uint32_t seed);
 /* Octaves of it, each half as large and 0.55 as strong; about -1..1. */
 float ris_paint_fbm(ris_vec3 p, int octaves, uint32_t seed);
-/* Cellular noise: distance to the nearest (near) and second (next) feature point of unit cells, and the nearest one's hash. */
+/* Cellular noise: distance to the nearest (near) and second (next) feature point of unit cells, and the
+ * nearest one's hash. */
 typedef struct ris_paint_cell {
     float near, next;
     uint32_t id;
@@ -58,7 +59,8 @@ ris_paint_cell ris_paint_cells(ris_vec3 p, uint32_t seed);
 
 /* ---- ray casting (occlusion.c) ---- */
 typedef struct ris_paint_tree ris_paint_tree;
-/* Bounding-volume tree over triangles (corner triples); keeps references to both arrays. NULL when memory is short. */
+/* Bounding-volume tree over triangles (corner triples); keeps references to both arrays. NULL when memory
+ * is short. */
 ris_paint_tree *ris_paint_tree_create(const ris_vec3 *position, const uint32_t *triangle,
                                       uint32_t triangle_count);
 void ris_paint_tree_destroy(ris_paint_tree *tree);
@@ -101,8 +103,9 @@ typedef struct ris_paint_surface {
     ris_paint_landmarks at;
 } ris_paint_surface;
 
-/* Prepares all of the above. extra: further meshes that shade the skin (eyeballs), brow: meshes of the brows; both may be
- * empty. mesh must outlive the surface. Errors: RIS_ERROR_DATA without UVs, RIS_ERROR_MEMORY. */
+/* Prepares all of the above. extra: further meshes that shade the skin (eyeballs), brow: meshes of the
+ * brows; both may be empty. mesh must outlive the surface. Errors: RIS_ERROR_DATA without UVs,
+ * RIS_ERROR_MEMORY. */
 ris_result ris_paint_surface_init(ris_paint_surface *surface, const ris_mesh *mesh, const ris_mesh *extra,
                                   uint32_t extra_count, const ris_mesh *brow, uint32_t brow_count,
                                   ris_error *err);

@@ -1,5 +1,6 @@
-/* Skin colour from two pigments: melanin and haemoglobin absorb with their own spectra, so that every local change
- * (blush, freckle, lip) stays a colour that skin can have. Then stubble, light blood under the eyes, baked hollows. */
+/* Skin colour from two pigments: melanin and haemoglobin absorb with their own spectra, so that every
+ * local change (blush, freckle, lip) stays a colour that skin can have. Then stubble, light blood under
+ * the eyes, baked hollows. */
 #include "paint.h"
 
 #include <math.h>
@@ -80,7 +81,8 @@ static void lips(const ris_paint_zones *z, ris_vec3 p, float s, pigment *ink)
     ink->shade = ris_paint_mix(ink->shade, 0.25f, deep);
 }
 
-/* Cut hairs in the scalp: a dot per follicle where the density allows, and their grey shine through the skin. */
+/* Cut hairs in the scalp: a dot per follicle where the density allows, and their grey shine through the
+ * skin. */
 static void stubble(const ris_paint_zones *z, ris_vec3 p, float brow, pigment *ink)
 {
     const ris_paint_cell hair = ris_paint_cells(at_size(p, 0.95f), 71);
@@ -97,7 +99,8 @@ static void stubble(const ris_paint_zones *z, ris_vec3 p, float brow, pigment *i
     ink->melanin += 0.28f * brow;
 }
 
-/* Fine relief, 0 = mean: pores, the criss-cross of thin skin, lines of forehead and lips, stubble. mm-ish, about -1..1 */
+/* Fine relief, 0 = mean: pores, the criss-cross of thin skin, lines of forehead and lips, stubble. mm-ish,
+ * about -1..1 */
 static float relief(const ris_paint_zones *z, ris_vec3 p, float s, float *pore)
 {
     const float face = (1 - z->lip) * (1 - z->inner_mouth) * (1 - z->socket);

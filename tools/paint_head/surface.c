@@ -43,7 +43,8 @@ static void make_normals(ris_paint_surface *surface)
         surface->normal[i] = ris_paint_unit(surface->normal[i]);
 }
 
-/* Mean normal curvature over the edges of each vertex, smoothed once; positive where the neighbours rise above. */
+/* Mean normal curvature over the edges of each vertex, smoothed once; positive where the neighbours rise
+ * above. */
 static ris_result make_curvature(ris_paint_surface *surface, ris_error *err)
 {
     const uint32_t count = surface->mesh->vertex_count;

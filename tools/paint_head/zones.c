@@ -1,10 +1,11 @@
-/* Where on the face a texel lies: soft weights from landmarks, edge loops of lips and lids, and a natural hairline. */
+/* Where on the face a texel lies: soft weights from landmarks, edge loops of lips and lids, and a natural
+ * hairline. */
 #include "paint.h"
 
 #include <math.h>
 
-/* Hairline: angle from straight ahead (degrees) against height over the eye line (mm on a face of scale 1): across the
- * forehead, round the temple, down the sideburn, behind the ear and down to the nape. */
+/* Hairline: angle from straight ahead (degrees) against height over the eye line (mm on a face of scale
+ * 1): across the forehead, round the temple, down the sideburn, behind the ear and down to the nape. */
 static const float hairline[][2] = {{0, 72},    {12, 73},   {24, 78},   {33, 75},   {41, 64},  {46, 48},
                                     {53, 33},   {58, 16},   {62, 2},    {65, -16},  {72, -22}, {82, -20},
                                     {100, -22}, {110, -40}, {120, -60}, {140, -75}, {180, -80}};
