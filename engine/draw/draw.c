@@ -6,13 +6,14 @@
 static ris_result check_size(uint32_t width, uint32_t height, ris_error *err)
 {
     if (width == 0 || height == 0 || width > 8192 || height > 8192) {
-        return ris_fail(err, RIS_ERROR_USAGE, "picture size must be 1 to 8192 each way, found %ux%u", (unsigned)width,
-                        (unsigned)height);
+        return ris_fail(err, RIS_ERROR_USAGE, "picture size must be 1 to 8192 each way, found %ux%u",
+                        (unsigned)width, (unsigned)height);
     }
     return RIS_OK;
 }
 
-ris_result ris_draw_create(ris_device *device, const ris_model *model, const ris_draw_def *def, ris_draw **out, ris_error *err)
+ris_result ris_draw_create(ris_device *device, const ris_model *model, const ris_draw_def *def,
+                           ris_draw **out, ris_error *err)
 {
     *out = NULL;
     ris_result result = check_size(def->width, def->height, err);
@@ -84,8 +85,8 @@ struct ris_window {
     ris_vk_swapchain *swapchain;
 };
 
-ris_result ris_window_create(ris_device *device, uint64_t surface, uint32_t width, uint32_t height, ris_window **out,
-                             ris_error *err)
+ris_result ris_window_create(ris_device *device, uint64_t surface, uint32_t width, uint32_t height,
+                             ris_window **out, ris_error *err)
 {
     VkSurfaceKHR handle;
     *out = NULL;
@@ -109,7 +110,8 @@ ris_result ris_window_create(ris_device *device, uint64_t surface, uint32_t widt
     return RIS_OK;
 }
 
-ris_result ris_window_present(ris_window *window, ris_draw *draw, uint32_t width, uint32_t height, ris_error *err)
+ris_result ris_window_present(ris_window *window, ris_draw *draw, uint32_t width, uint32_t height,
+                              ris_error *err)
 {
     const ris_vk_access from = {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
                                 VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL};

@@ -19,8 +19,15 @@ typedef struct ris_draw_target {
 
 /* The graphics pipelines, in drawing order. */
 typedef enum ris_draw_pipe {
-    RIS_DRAW_PIPE_SHADOW, RIS_DRAW_PIPE_BACKGROUND, RIS_DRAW_PIPE_SKIN, RIS_DRAW_PIPE_EYE, RIS_DRAW_PIPE_MOUTH,
-    RIS_DRAW_PIPE_HAIR, RIS_DRAW_PIPE_CORNEA, RIS_DRAW_PIPE_WIRE, RIS_DRAW_PIPE_COUNT
+    RIS_DRAW_PIPE_SHADOW,
+    RIS_DRAW_PIPE_BACKGROUND,
+    RIS_DRAW_PIPE_SKIN,
+    RIS_DRAW_PIPE_EYE,
+    RIS_DRAW_PIPE_MOUTH,
+    RIS_DRAW_PIPE_HAIR,
+    RIS_DRAW_PIPE_CORNEA,
+    RIS_DRAW_PIPE_WIRE,
+    RIS_DRAW_PIPE_COUNT
 } ris_draw_pipe;
 
 /* The scene on the device. */
@@ -55,17 +62,21 @@ struct ris_draw {
 ris_result ris__draw_store_create(ris_draw *draw, ris_error *err);
 void ris__draw_store_finish(ris_draw *draw);
 /* texture.c: an image file with mips. RIS_ERROR_DATA names the file. */
-ris_result ris__draw_texture_load(ris_device *device, const char *path, VkFormat format, ris_vk_image *out, ris_error *err);
+ris_result ris__draw_texture_load(ris_device *device, const char *path, VkFormat format, ris_vk_image *out,
+                                  ris_error *err);
 /* One pixel. */
-ris_result ris__draw_texture_plain(ris_device *device, const uint8_t rgba[4], VkFormat format, ris_vk_image *out,
-                                   ris_error *err);
+ris_result ris__draw_texture_plain(ris_device *device, const uint8_t rgba[4], VkFormat format,
+                                   ris_vk_image *out, ris_error *err);
 /* The linear detail texture beside a colour texture: "<stem>_detail.png"; leaves *out zeroed where there is no such file. */
-ris_result ris__draw_texture_detail(ris_device *device, const char *color_path, ris_vk_image *out, ris_error *err);
+ris_result ris__draw_texture_detail(ris_device *device, const char *color_path, ris_vk_image *out,
+                                    ris_error *err);
 /* target.c */
-ris_result ris__draw_target_create(ris_device *device, uint32_t width, uint32_t height, ris_draw_target *out, ris_error *err);
+ris_result ris__draw_target_create(ris_device *device, uint32_t width, uint32_t height, ris_draw_target *out,
+                                   ris_error *err);
 void ris__draw_target_finish(ris_device *device, ris_draw_target *target);
 /* pipes.c: layouts, sets and pipelines */
 ris_result ris__draw_pipes_create(ris_draw *draw, ris_error *err);
 void ris__draw_pipes_finish(ris_draw *draw);
 /* view.c: fills what is the same for the whole frame */
-void ris__draw_view_fill(const ris_draw *draw, const ris_camera *camera, const float head[12], ris_draw_view *out);
+void ris__draw_view_fill(const ris_draw *draw, const ris_camera *camera, const float head[12],
+                         ris_draw_view *out);

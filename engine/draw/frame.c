@@ -18,16 +18,20 @@ static void dispatch(const ris_draw *draw, VkCommandBuffer cmd, VkPipeline pipel
 static void record_surface(const ris_draw *draw, VkCommandBuffer cmd)
 {
     const VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
-    const VkAccessFlags2 write = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, read = VK_ACCESS_2_SHADER_STORAGE_READ_BIT;
-    vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, draw->compute_layout, 0, 1, draw->compute_sets.set, 0, NULL);
+    const VkAccessFlags2 write = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
+                         read = VK_ACCESS_2_SHADER_STORAGE_READ_BIT;
+    vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, draw->compute_layout, 0, 1,
+                            draw->compute_sets.set, 0, NULL);
     dispatch(draw, cmd, draw->refine, draw->scene.skin_count);
     ris_vk_barrier(cmd, compute, write, compute, read);
     dispatch(draw, cmd, draw->normal, draw->scene.skin_count);
     if (draw->scene.ride_count > 0) {
-        ris_vk_barrier(cmd, compute, write, compute, read | write); /* one buffer holds skin and riding parts */
+        ris_vk_barrier(cmd, compute, write, compute,
+                       read | write); /* one buffer holds skin and riding parts */
         dispatch(draw, cmd, draw->ride, draw->scene.ride_count);
     }
-    ris_vk_barrier(cmd, compute, write, VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, read);
+    ris_vk_barrier(cmd, compute, write,
+                   VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, read);
 }
 
 /* row-major 3x4: a after b */
@@ -44,7 +48,8 @@ static void chain(const float a[12], const float b[12], float out[12])
     }
 }
 
-static void draw_item(const ris_draw *draw, VkCommandBuffer cmd, const ris_sim *sim, const ris_draw_item *item)
+static void draw_item(const ris_draw *draw, VkCommandBuffer cmd, const ris_sim *sim,
+                      const ris_draw_item *item)
 {
     static const float identity[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     float head[12], bone[12], place[12];
@@ -61,8 +66,8 @@ static void draw_item(const ris_draw *draw, VkCommandBuffer cmd, const ris_sim *
     memcpy(object.place, place, sizeof place);
     vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, draw->graphics_layout, 0, 1,
                             draw->graphics_sets[set].set, 0, NULL);
-    vkCmdPushConstants(cmd, draw->graphics_layout, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
-                       sizeof object, &object);
+    vkCmdPushConstants(cmd, draw->graphics_layout, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT,
+                       0, sizeof object, &object);
     vkCmdDrawIndexed(cmd, item->index_count, 1, item->first_index, 0, 0);
 }
 
@@ -91,19 +96,26 @@ static void set_area(VkCommandBuffer cmd, uint32_t width, uint32_t height)
 static void record_shadow(const ris_draw *draw, VkCommandBuffer cmd, const ris_sim *sim)
 {
     const ris_vk_access before = {VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, 0, VK_IMAGE_LAYOUT_UNDEFINED};
-    const ris_vk_access target = {VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
-                                  VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
-                                  VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL};
-    const ris_vk_access sampled = {VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
+    const ris_vk_access target = {
+        VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
+        VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
+        VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL};
+    const ris_vk_access sampled = {VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
+                                   VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
                                    VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
     const VkRenderingAttachmentInfo none = {.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
     const VkRenderingAttachmentInfo depth = {.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
-                                             .imageView = draw->shadow.view, .imageLayout = target.layout,
-                                             .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR, .storeOp = VK_ATTACHMENT_STORE_OP_STORE,
+                                             .imageView = draw->shadow.view,
+                                             .imageLayout = target.layout,
+                                             .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,
+                                             .storeOp = VK_ATTACHMENT_STORE_OP_STORE,
                                              .clearValue.depthStencil.depth = 1.0f};
-    const VkRenderingInfo info = {.sType = VK_STRUCTURE_TYPE_RENDERING_INFO, .layerCount = 1,
+    const VkRenderingInfo info = {.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
+                                  .layerCount = 1,
                                   .renderArea.extent = {RIS_DRAW_SHADOW_SIDE, RIS_DRAW_SHADOW_SIDE},
-                                  .colorAttachmentCount = 1, .pColorAttachments = &none, .pDepthAttachment = &depth};
+                                  .colorAttachmentCount = 1,
+                                  .pColorAttachments = &none,
+                                  .pDepthAttachment = &depth};
     ris_vk_image_barrier(cmd, draw->shadow.handle, VK_IMAGE_ASPECT_DEPTH_BIT, before, target);
     vkCmdBeginRendering(cmd, &info);
     set_area(cmd, RIS_DRAW_SHADOW_SIDE, RIS_DRAW_SHADOW_SIDE);
@@ -120,37 +132,47 @@ static void record_shadow(const ris_draw *draw, VkCommandBuffer cmd, const ris_s
 
 static void begin_picture(const ris_draw *draw, VkCommandBuffer cmd)
 {
-    const ris_vk_access none = {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT, VK_IMAGE_LAYOUT_UNDEFINED};
-    const ris_vk_access color = {VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
+    const ris_vk_access none = {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
+                                VK_IMAGE_LAYOUT_UNDEFINED};
+    const ris_vk_access color = {VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                                 VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
                                  VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
-    const ris_vk_access depth = {VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
-                                 VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
-                                 VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL};
+    const ris_vk_access depth = {
+        VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
+        VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
+        VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL};
     const ris_draw_target *target = &draw->target;
     ris_vk_image_barrier(cmd, target->many.handle, VK_IMAGE_ASPECT_COLOR_BIT, none, color);
     ris_vk_image_barrier(cmd, target->color.handle, VK_IMAGE_ASPECT_COLOR_BIT, none, color);
     ris_vk_image_barrier(cmd, target->depth.handle, VK_IMAGE_ASPECT_DEPTH_BIT, none, depth);
     const VkRenderingAttachmentInfo samples = {.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
-                                               .imageView = target->many.view, .imageLayout = color.layout,
+                                               .imageView = target->many.view,
+                                               .imageLayout = color.layout,
                                                .resolveMode = VK_RESOLVE_MODE_AVERAGE_BIT,
-                                               .resolveImageView = target->color.view, .resolveImageLayout = color.layout,
+                                               .resolveImageView = target->color.view,
+                                               .resolveImageLayout = color.layout,
                                                .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,
                                                .storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE};
     const VkRenderingAttachmentInfo nearest = {.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
-                                               .imageView = target->depth.view, .imageLayout = depth.layout,
+                                               .imageView = target->depth.view,
+                                               .imageLayout = depth.layout,
                                                .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,
                                                .storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE,
                                                .clearValue.depthStencil.depth = 1.0f};
-    const VkRenderingInfo info = {.sType = VK_STRUCTURE_TYPE_RENDERING_INFO, .layerCount = 1,
-                                  .renderArea.extent = {target->width, target->height}, .colorAttachmentCount = 1,
-                                  .pColorAttachments = &samples, .pDepthAttachment = &nearest};
+    const VkRenderingInfo info = {.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
+                                  .layerCount = 1,
+                                  .renderArea.extent = {target->width, target->height},
+                                  .colorAttachmentCount = 1,
+                                  .pColorAttachments = &samples,
+                                  .pDepthAttachment = &nearest};
     vkCmdBeginRendering(cmd, &info);
     set_area(cmd, target->width, target->height);
 }
 
 static void record_picture(const ris_draw *draw, VkCommandBuffer cmd, const ris_sim *sim)
 {
-    const ris_vk_access color = {VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
+    const ris_vk_access color = {VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                                 VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
                                  VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
     const ris_vk_access copied = {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
                                   VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL};
@@ -180,8 +202,8 @@ static void record_picture(const ris_draw *draw, VkCommandBuffer cmd, const ris_
 }
 
 /* Nodes are bound at buffer + offset; everything else is already in place. */
-static ris_result draw_nodes(ris_draw *draw, ris_sim *sim, VkBuffer buffer, VkDeviceSize offset, const ris_camera *camera,
-                             ris_error *err)
+static ris_result draw_nodes(ris_draw *draw, ris_sim *sim, VkBuffer buffer, VkDeviceSize offset,
+                             const ris_camera *camera, ris_error *err)
 {
     ris_result result;
     float head[12];
@@ -195,7 +217,8 @@ static ris_result draw_nodes(ris_draw *draw, ris_sim *sim, VkBuffer buffer, VkDe
     ris_vk_sets_write_buffer(draw->device, &draw->compute_sets, 0, RIS_DRAW_BIND_NODE, buffer, offset, size);
     RIS_TRY(ris_vk_cmd_begin(draw->device, &draw->cmd, true, err));
     VkCommandBuffer cmd = draw->cmd.handle;
-    ris_vk_barrier(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT | VK_ACCESS_2_MEMORY_READ_BIT,
+    ris_vk_barrier(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                   VK_ACCESS_2_MEMORY_WRITE_BIT | VK_ACCESS_2_MEMORY_READ_BIT,
                    VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
                    VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
     record_surface(draw, cmd);

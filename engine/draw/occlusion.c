@@ -34,13 +34,14 @@ static void aim(view *to, ris_vec3 z)
     float length = sqrtf(dot(x, x));
     to->z = z;
     to->x = (ris_vec3){x.x / length, x.y / length, x.z / length};
-    to->y = (ris_vec3){z.y * to->x.z - z.z * to->x.y, z.z * to->x.x - z.x * to->x.z, z.x * to->x.y - z.y * to->x.x};
+    to->y = (ris_vec3){z.y * to->x.z - z.z * to->x.y, z.z * to->x.x - z.x * to->x.z,
+                       z.x * to->x.y - z.y * to->x.x};
 }
 
 static ris_vec3 project(const view *in, ris_vec3 p)
 {
-    return (ris_vec3){(dot(p, in->x) - in->cx) * in->scale + SIDE / 2, (dot(p, in->y) - in->cy) * in->scale + SIDE / 2,
-                      dot(p, in->z)};
+    return (ris_vec3){(dot(p, in->x) - in->cx) * in->scale + SIDE / 2,
+                      (dot(p, in->y) - in->cy) * in->scale + SIDE / 2, dot(p, in->z)};
 }
 
 static int clamp_pixel(float at)
@@ -139,7 +140,8 @@ ris_result ris__occlusion(const ris_occluder *occluder, uint32_t occluder_count,
         free(at);
         free(in.depth);
         free(total);
-        return ris_fail(err, RIS_ERROR_MEMORY, "out of memory for the occlusion of %u points", (unsigned)point_count);
+        return ris_fail(err, RIS_ERROR_MEMORY, "out of memory for the occlusion of %u points",
+                        (unsigned)point_count);
     }
     ris_vec3 centre;
     float radius = bounds(occluder, occluder_count, &centre);

@@ -31,21 +31,21 @@ static ris_result create_compute(ris_draw *draw, ris_error *err)
     RIS_TRY(ris_vk_sets_create(device, type, RIS_DRAW_BIND_COMPUTE_COUNT, VK_SHADER_STAGE_COMPUTE_BIT, 1,
                                &draw->compute_sets, err));
     const ris_vk_buffer *bound[RIS_DRAW_BIND_COMPUTE_COUNT] = {
-        [RIS_DRAW_BIND_NODE] = &store->node, [RIS_DRAW_BIND_TERM_START] = &store->term_start,
-        [RIS_DRAW_BIND_TERM] = &store->term, [RIS_DRAW_BIND_POSITION] = &store->position,
+        [RIS_DRAW_BIND_NODE] = &store->node,     [RIS_DRAW_BIND_TERM_START] = &store->term_start,
+        [RIS_DRAW_BIND_TERM] = &store->term,     [RIS_DRAW_BIND_POSITION] = &store->position,
         [RIS_DRAW_BIND_NORMAL] = &store->normal, [RIS_DRAW_BIND_RING_START] = &store->ring_start,
-        [RIS_DRAW_BIND_RING] = &store->ring, [RIS_DRAW_BIND_RIDE] = &store->ride};
+        [RIS_DRAW_BIND_RING] = &store->ring,     [RIS_DRAW_BIND_RIDE] = &store->ride};
     for (uint32_t i = 0; i < RIS_DRAW_BIND_COMPUTE_COUNT; i++) {
         ris_vk_sets_write_buffer(device, &draw->compute_sets, 0, i, bound[i]->handle, 0, VK_WHOLE_SIZE);
     }
-    RIS_TRY(ris_vk_layout_create(device, draw->compute_sets.layout, VK_SHADER_STAGE_COMPUTE_BIT, sizeof(ris_draw_count),
-                                 &draw->compute_layout, err));
-    RIS_TRY(ris_vk_compute_create(device, draw->compute_layout, RIS_VK_CODE(ris_spv_refine_comp), "draw refine",
-                                  &draw->refine, err));
-    RIS_TRY(ris_vk_compute_create(device, draw->compute_layout, RIS_VK_CODE(ris_spv_surface_normal_comp), "draw normal",
-                                  &draw->normal, err));
-    RIS_TRY(ris_vk_compute_create(device, draw->compute_layout, RIS_VK_CODE(ris_spv_ride_comp), "draw ride", &draw->ride,
-                                  err));
+    RIS_TRY(ris_vk_layout_create(device, draw->compute_sets.layout, VK_SHADER_STAGE_COMPUTE_BIT,
+                                 sizeof(ris_draw_count), &draw->compute_layout, err));
+    RIS_TRY(ris_vk_compute_create(device, draw->compute_layout, RIS_VK_CODE(ris_spv_refine_comp),
+                                  "draw refine", &draw->refine, err));
+    RIS_TRY(ris_vk_compute_create(device, draw->compute_layout, RIS_VK_CODE(ris_spv_surface_normal_comp),
+                                  "draw normal", &draw->normal, err));
+    RIS_TRY(ris_vk_compute_create(device, draw->compute_layout, RIS_VK_CODE(ris_spv_ride_comp), "draw ride",
+                                  &draw->ride, err));
 fail:
     return result;
 }
@@ -56,13 +56,15 @@ static ris_result create_sets(ris_draw *draw, ris_error *err)
     ris_device *device = draw->device;
     const ris_draw_store *store = &draw->store;
     VkDescriptorType type[RIS_DRAW_BIND_GRAPHICS_COUNT];
-    const ris_vk_buffer *bound[RIS_DRAW_BIND_COLOR] = {
-        [RIS_DRAW_BIND_FRAME] = &store->view, [RIS_DRAW_BIND_AT] = &store->position,
-        [RIS_DRAW_BIND_FACING] = &store->normal, [RIS_DRAW_BIND_REST] = &store->rest,
-        [RIS_DRAW_BIND_CORNER] = &store->corner};
+    const ris_vk_buffer *bound[RIS_DRAW_BIND_COLOR] = {[RIS_DRAW_BIND_FRAME] = &store->view,
+                                                       [RIS_DRAW_BIND_AT] = &store->position,
+                                                       [RIS_DRAW_BIND_FACING] = &store->normal,
+                                                       [RIS_DRAW_BIND_REST] = &store->rest,
+                                                       [RIS_DRAW_BIND_CORNER] = &store->corner};
     ris_result result = RIS_OK;
     for (uint32_t i = 0; i < RIS_DRAW_BIND_GRAPHICS_COUNT; i++) {
-        type[i] = i < RIS_DRAW_BIND_COLOR ? VK_DESCRIPTOR_TYPE_STORAGE_BUFFER : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+        type[i] = i < RIS_DRAW_BIND_COLOR ? VK_DESCRIPTOR_TYPE_STORAGE_BUFFER
+                                          : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
     }
     draw->graphics_sets = calloc(store->texture_count + 1, sizeof *draw->graphics_sets);
     if (draw->graphics_sets == NULL) {
@@ -89,11 +91,17 @@ fail:
 
 static ris_vk_graphics_def picture_def(const ris_draw *draw, ris_vk_code fragment, const char *name)
 {
-    return (ris_vk_graphics_def){.layout = draw->graphics_layout, .vertex = RIS_VK_CODE(ris_spv_mesh_vert),
-                                 .fragment = fragment, .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST,
-                                 .polygon = VK_POLYGON_MODE_FILL, .cull = VK_CULL_MODE_BACK_BIT, .depth_test = true,
-                                 .depth_write = true, .samples = VK_SAMPLE_COUNT_4_BIT,
-                                 .color_format = RIS_DRAW_COLOR_FORMAT, .depth_format = RIS_DRAW_DEPTH_FORMAT,
+    return (ris_vk_graphics_def){.layout = draw->graphics_layout,
+                                 .vertex = RIS_VK_CODE(ris_spv_mesh_vert),
+                                 .fragment = fragment,
+                                 .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST,
+                                 .polygon = VK_POLYGON_MODE_FILL,
+                                 .cull = VK_CULL_MODE_BACK_BIT,
+                                 .depth_test = true,
+                                 .depth_write = true,
+                                 .samples = VK_SAMPLE_COUNT_4_BIT,
+                                 .color_format = RIS_DRAW_COLOR_FORMAT,
+                                 .depth_format = RIS_DRAW_DEPTH_FORMAT,
                                  .name = name};
 }
 
@@ -104,7 +112,8 @@ static ris_result create_graphics(ris_draw *draw, ris_error *err)
     def[RIS_DRAW_PIPE_SHADOW].vertex = RIS_VK_CODE(ris_spv_shadow_vert);
     def[RIS_DRAW_PIPE_SHADOW].samples = VK_SAMPLE_COUNT_1_BIT;
     def[RIS_DRAW_PIPE_SHADOW].color_format = VK_FORMAT_UNDEFINED;
-    def[RIS_DRAW_PIPE_BACKGROUND] = picture_def(draw, RIS_VK_CODE(ris_spv_background_frag), "draw background");
+    def[RIS_DRAW_PIPE_BACKGROUND] =
+        picture_def(draw, RIS_VK_CODE(ris_spv_background_frag), "draw background");
     def[RIS_DRAW_PIPE_BACKGROUND].vertex = RIS_VK_CODE(ris_spv_background_vert);
     def[RIS_DRAW_PIPE_BACKGROUND].cull = VK_CULL_MODE_NONE;
     def[RIS_DRAW_PIPE_BACKGROUND].depth_test = def[RIS_DRAW_PIPE_BACKGROUND].depth_write = false;
@@ -135,8 +144,8 @@ ris_result ris__draw_pipes_create(ris_draw *draw, ris_error *err)
     RIS_TRY(create_compute(draw, err));
     RIS_TRY(create_sets(draw, err));
     RIS_TRY(ris_vk_layout_create(draw->device, draw->graphics_sets[0].layout,
-                                 VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, sizeof(ris_draw_object),
-                                 &draw->graphics_layout, err));
+                                 VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT,
+                                 sizeof(ris_draw_object), &draw->graphics_layout, err));
     RIS_TRY(create_graphics(draw, err));
 fail:
     return result;

@@ -219,7 +219,8 @@ static bool make_terms(const topology *top, uint32_t levels, ris_refined *out)
     const ris_mesh *mesh = top->mesh;
     size_t total = (size_t)mesh->vertex_count + (levels ? (size_t)top->edge_count + mesh->face_count : 0);
     size_t capacity = 8 * total;
-    row work = {calloc(mesh->vertex_count + 1, sizeof(float)), calloc(mesh->vertex_count + 1, sizeof(uint32_t)), 0};
+    row work = {calloc(mesh->vertex_count + 1, sizeof(float)),
+                calloc(mesh->vertex_count + 1, sizeof(uint32_t)), 0};
     out->term_start = calloc(total + 1, sizeof *out->term_start);
     out->term = malloc((capacity + 1) * sizeof *out->term);
     bool good = work.weight && work.touched && out->term_start && out->term;
@@ -335,7 +336,8 @@ static bool make_quads(const topology *top, uint32_t levels, ris_refined *out, r
 static bool make_index(ris_refined *out, const ris_draw_corner *raw)
 {
     size_t count = 4 * (size_t)out->quad_count;
-    uint32_t *head = malloc((out->vertex_count + 1) * sizeof *head), *link = malloc((count + 1) * sizeof *link);
+    uint32_t *head = malloc((out->vertex_count + 1) * sizeof *head),
+             *link = malloc((count + 1) * sizeof *link);
     uint32_t *merged = malloc((count + 1) * sizeof *merged);
     out->corner = malloc((count + 1) * sizeof *out->corner);
     out->index = malloc((6 * (size_t)out->quad_count + 1) * sizeof *out->index);
@@ -450,13 +452,15 @@ void ris__refined_normal(const ris_refined *refined, const ris_vec3 *position, r
     for (uint32_t v = 0; v < refined->vertex_count; v++) {
         ris_vec3 n = {0.0f, 0.0f, 0.0f}, p = position[v];
         for (uint32_t i = refined->ring_start[v]; i < refined->ring_start[v + 1]; i++) {
-            ris_vec3 b = position[refined->ring[2 * (size_t)i]], c = position[refined->ring[2 * (size_t)i + 1]];
+            ris_vec3 b = position[refined->ring[2 * (size_t)i]],
+                     c = position[refined->ring[2 * (size_t)i + 1]];
             ris_vec3 x = {b.x - p.x, b.y - p.y, b.z - p.z}, y = {c.x - p.x, c.y - p.y, c.z - p.z};
             n.x += x.y * y.z - x.z * y.y;
             n.y += x.z * y.x - x.x * y.z;
             n.z += x.x * y.y - x.y * y.x;
         }
         float length = sqrtf(n.x * n.x + n.y * n.y + n.z * n.z);
-        out[v] = length > 0.0f ? (ris_vec3){n.x / length, n.y / length, n.z / length} : (ris_vec3){0.0f, 0.0f, 1.0f};
+        out[v] = length > 0.0f ? (ris_vec3){n.x / length, n.y / length, n.z / length}
+                               : (ris_vec3){0.0f, 0.0f, 1.0f};
     }
 }

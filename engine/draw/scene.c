@@ -93,7 +93,8 @@ static void finish_piece(piece *from)
 
 static bool is_shaded(const piece *of)
 {
-    return of->part == NULL || of->part->material == RIS_MATERIAL_EYE || of->part->material == RIS_MATERIAL_CORNEA;
+    return of->part == NULL || of->part->material == RIS_MATERIAL_EYE ||
+           of->part->material == RIS_MATERIAL_CORNEA;
 }
 
 static bool casts(const piece *of)
@@ -147,8 +148,8 @@ done:
 }
 
 /* Moves a binding from a triangle of the coarse skin to the drawn surface of the same face, keeping the height above it. */
-static ris_draw_ride ride_on_surface(const piece *skin, const ris_model *model, const piece *part, uint32_t vertex,
-                                     uint32_t face, uint32_t first_quad)
+static ris_draw_ride ride_on_surface(const piece *skin, const ris_model *model, const piece *part,
+                                     uint32_t vertex, uint32_t face, uint32_t first_quad)
 {
     const uint32_t *node = model->triangle + 3 * (size_t)part->ride_triangle[vertex];
     const ris_vec3 *coarse = skin->mesh->position;
@@ -169,7 +170,10 @@ static ris_draw_ride ride_on_surface(const piece *skin, const ris_model *model, 
             nearest = distance;
             ris_vec3 p = plus(mix3(pa, pb, pc, share), away, 1.0f), n = part->normal[vertex];
             ris_vec3 offset = ris__ride_offset(p, pa, pb, pc, share);
-            best = (ris_draw_ride){.a = a, .b = b, .c = c, .share = {share[0], share[1], share[2], 0.0f},
+            best = (ris_draw_ride){.a = a,
+                                   .b = b,
+                                   .c = c,
+                                   .share = {share[0], share[1], share[2], 0.0f},
                                    .offset = {offset.x, offset.y, offset.z, 0.0f}};
             best.normal = (ris_vec4){n.x * frame[0].x + n.y * frame[0].y + n.z * frame[0].z,
                                      n.x * frame[1].x + n.y * frame[1].y + n.z * frame[1].z,
@@ -180,12 +184,13 @@ static ris_draw_ride ride_on_surface(const piece *skin, const ris_model *model, 
 }
 
 /* Face of the skin mesh each triangle of the model came from, and the first drawn quad of each face. */
-static ris_result add_rides(const ris_model *model, const piece *skin, const piece *part, uint32_t first_vertex,
-                            ris_draw_scene *out, ris_error *err)
+static ris_result add_rides(const ris_model *model, const piece *skin, const piece *part,
+                            uint32_t first_vertex, ris_draw_scene *out, ris_error *err)
 {
     const ris_mesh *mesh = skin->mesh;
     uint32_t corners = mesh->face_start[mesh->face_count];
-    uint32_t *corner_face = room(corners, sizeof *corner_face), *first_quad = room(mesh->face_count, sizeof *first_quad);
+    uint32_t *corner_face = room(corners, sizeof *corner_face),
+             *first_quad = room(mesh->face_count, sizeof *first_quad);
     if (corner_face == NULL || first_quad == NULL) {
         free(corner_face);
         free(first_quad);
@@ -245,7 +250,8 @@ static void append(ris_draw_scene *out, const ris_head *head, const piece *from)
     const ris_part_def *part = from->part;
     *item = (ris_draw_item){.material = part ? part->material : RIS_MATERIAL_SKIN,
                             .bone = part ? part->bone : RIS_BONE_SKIN,
-                            .first_index = out->index_count, .index_count = in->index_count,
+                            .first_index = out->index_count,
+                            .index_count = in->index_count,
                             .tint = part ? part->tint : (ris_vec3){0.52f, 0.28f, 0.19f},
                             .pivot = part ? part->pivot : (ris_vec3){0.0f, 0.0f, 0.0f}};
     item->texture = texture_index(out, part ? part->color : head->color);
@@ -307,7 +313,8 @@ static void find_mouth(ris_draw_scene *out, const piece *all, uint32_t count)
 {
     float front = -FLT_MAX;
     for (uint32_t i = 0; i < count; i++) {
-        for (uint32_t v = 0; all[i].part != NULL && is_mouth(all[i].part->material) && v < all[i].mesh->vertex_count; v++) {
+        for (uint32_t v = 0;
+             all[i].part != NULL && is_mouth(all[i].part->material) && v < all[i].mesh->vertex_count; v++) {
             front = fmaxf(front, all[i].mesh->position[v].z);
         }
     }
@@ -347,7 +354,8 @@ static void find_fade(ris_draw_scene *out, const ris_model *model)
     }
 }
 
-static ris_result assemble(const ris_model *model, piece *all, uint32_t count, ris_draw_scene *out, ris_error *err)
+static ris_result assemble(const ris_model *model, piece *all, uint32_t count, ris_draw_scene *out,
+                           ris_error *err)
 {
     if (!reserve(out, all, count)) {
         return ris_fail(err, RIS_ERROR_MEMORY, "out of memory for drawing the head");

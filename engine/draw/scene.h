@@ -17,24 +17,25 @@ typedef struct ris_draw_item {
 typedef struct ris_draw_scene {
     uint32_t skin_count;   /* surface vertices of the skin, the first ones */
     uint32_t vertex_count; /* surface vertices in all */
-    uint32_t term_count, corner_count, index_count, line_count, ride_count, item_count, texture_count, ring_count;
-    uint32_t *term_start;  /* (skin_count + 1) */
-    ris_draw_term *term;   /* (term_count) */
-    uint32_t *ring_start;  /* (skin_count + 1) */
-    uint32_t *ring;        /* (ring_count x 2) */
-    ris_vec4 *position;    /* at rest, w 1 (vertex_count) */
-    ris_vec4 *normal;      /* at rest, w 0 (vertex_count) */
-    ris_vec4 *rest;        /* position at rest, w = visible share of the surroundings (vertex_count) */
+    uint32_t term_count, corner_count, index_count, line_count, ride_count, item_count, texture_count,
+        ring_count;
+    uint32_t *term_start; /* (skin_count + 1) */
+    ris_draw_term *term;  /* (term_count) */
+    uint32_t *ring_start; /* (skin_count + 1) */
+    uint32_t *ring;       /* (ring_count x 2) */
+    ris_vec4 *position;   /* at rest, w 1 (vertex_count) */
+    ris_vec4 *normal;     /* at rest, w 0 (vertex_count) */
+    ris_vec4 *rest;       /* position at rest, w = visible share of the surroundings (vertex_count) */
     ris_draw_corner *corner;
-    uint32_t *index;       /* triangles into corner (index_count) */
-    uint32_t *line;        /* edges of the simulated skin mesh, pairs into corner (line_count) */
-    ris_draw_ride *ride;   /* (ride_count) */
-    ris_draw_item *item;   /* skin first, then opaque parts, hair, clear parts (item_count) */
-    const char **texture;  /* paths, each once, owned by the head (texture_count) */
-    ris_vec4 mouth;        /* as in ris_draw_view */
+    uint32_t *index;      /* triangles into corner (index_count) */
+    uint32_t *line;       /* edges of the simulated skin mesh, pairs into corner (line_count) */
+    ris_draw_ride *ride;  /* (ride_count) */
+    ris_draw_item *item;  /* skin first, then opaque parts, hair, clear parts (item_count) */
+    const char **texture; /* paths, each once, owned by the head (texture_count) */
+    ris_vec4 mouth;       /* as in ris_draw_view */
     uint32_t lip[2];
     float fade[2];
-    ris_vec3 low, high;    /* bounds of everything at rest, mm */
+    ris_vec3 low, high; /* bounds of everything at rest, mm */
 } ris_draw_scene;
 
 /* Builds the scene of model's head. RIS_ERROR_MEMORY; on failure *out is zeroed. */

@@ -3,8 +3,8 @@
 
 #include <stdlib.h>
 
-static ris_result fill(ris_device *device, const char *name, const void *data, size_t size, VkBufferUsageFlags usage,
-                       ris_vk_buffer *out, ris_error *err)
+static ris_result fill(ris_device *device, const char *name, const void *data, size_t size,
+                       VkBufferUsageFlags usage, ris_vk_buffer *out, ris_error *err)
 {
     VkDeviceSize room = size > 0 ? size : 16; /* an empty buffer cannot be bound */
     ris_result result = ris_vk_buffer_create(device, RIS_VK_DEVICE, room, usage, name, out, err);
@@ -27,7 +27,8 @@ static ris_result load_textures(ris_draw *draw, ris_error *err)
     store->texture_count = count;
     for (uint32_t i = 0; i < count; i++) {
         const char *path = draw->scene.texture[i];
-        ris_result result = ris__draw_texture_load(draw->device, path, VK_FORMAT_R8G8B8A8_UNORM, &store->texture[i], err);
+        ris_result result =
+            ris__draw_texture_load(draw->device, path, VK_FORMAT_R8G8B8A8_UNORM, &store->texture[i], err);
         if (result == RIS_OK) {
             result = ris__draw_texture_detail(draw->device, path, &store->detail[i], err);
         }
@@ -35,17 +36,21 @@ static ris_result load_textures(ris_draw *draw, ris_error *err)
             return result;
         }
     }
-    ris_result result = ris__draw_texture_plain(draw->device, white, VK_FORMAT_R8G8B8A8_UNORM, &store->texture[count], err);
-    return result != RIS_OK ? result : ris__draw_texture_plain(draw->device, flat, VK_FORMAT_R8G8B8A8_UNORM,
-                                                               &store->detail[count], err);
+    ris_result result =
+        ris__draw_texture_plain(draw->device, white, VK_FORMAT_R8G8B8A8_UNORM, &store->texture[count], err);
+    return result != RIS_OK ? result
+                            : ris__draw_texture_plain(draw->device, flat, VK_FORMAT_R8G8B8A8_UNORM,
+                                                      &store->detail[count], err);
 }
 
 static ris_result create_shadow_sampler(ris_draw *draw, ris_error *err)
 {
     ris_device *vk = draw->device;
     ris_result result = RIS_OK;
-    const VkSamplerCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO, .magFilter = VK_FILTER_NEAREST,
-                                      .minFilter = VK_FILTER_NEAREST, .mipmapMode = VK_SAMPLER_MIPMAP_MODE_NEAREST,
+    const VkSamplerCreateInfo info = {.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
+                                      .magFilter = VK_FILTER_NEAREST,
+                                      .minFilter = VK_FILTER_NEAREST,
+                                      .mipmapMode = VK_SAMPLER_MIPMAP_MODE_NEAREST,
                                       .addressModeU = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
                                       .addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
                                       .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE};
@@ -59,27 +64,39 @@ ris_result ris__draw_store_create(ris_draw *draw, ris_error *err)
     ris_device *device = draw->device;
     const ris_draw_scene *scene = &draw->scene;
     ris_draw_store *store = &draw->store;
-    const VkBufferUsageFlags data = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, index = VK_BUFFER_USAGE_INDEX_BUFFER_BIT;
+    const VkBufferUsageFlags data = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                             index = VK_BUFFER_USAGE_INDEX_BUFFER_BIT;
     const size_t skin = (size_t)scene->skin_count, vertices = (size_t)scene->vertex_count;
-    const ris_vk_image_def shadow = {.width = RIS_DRAW_SHADOW_SIDE, .height = RIS_DRAW_SHADOW_SIDE, .mip_count = 1,
-                                     .format = RIS_DRAW_DEPTH_FORMAT, .aspect = VK_IMAGE_ASPECT_DEPTH_BIT,
-                                     .usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
+    const ris_vk_image_def shadow = {.width = RIS_DRAW_SHADOW_SIDE,
+                                     .height = RIS_DRAW_SHADOW_SIDE,
+                                     .mip_count = 1,
+                                     .format = RIS_DRAW_DEPTH_FORMAT,
+                                     .aspect = VK_IMAGE_ASPECT_DEPTH_BIT,
+                                     .usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT |
+                                              VK_IMAGE_USAGE_SAMPLED_BIT,
                                      .name = "key light depth"};
     ris_result result;
-    RIS_TRY(ris_vk_buffer_create(device, RIS_VK_UPLOAD, (VkDeviceSize)draw->model->node_count * sizeof(ris_vec4), data,
-                                 "draw nodes", &store->node, err));
-    RIS_TRY(ris_vk_buffer_create(device, RIS_VK_UPLOAD, sizeof(ris_draw_view), data, "draw view", &store->view, err));
-    RIS_TRY(fill(device, "draw term start", scene->term_start, (skin + 1) * 4, data, &store->term_start, err));
-    RIS_TRY(fill(device, "draw terms", scene->term, scene->term_count * sizeof *scene->term, data, &store->term, err));
-    RIS_TRY(fill(device, "draw ring start", scene->ring_start, (skin + 1) * 4, data, &store->ring_start, err));
+    RIS_TRY(ris_vk_buffer_create(device, RIS_VK_UPLOAD,
+                                 (VkDeviceSize)draw->model->node_count * sizeof(ris_vec4), data, "draw nodes",
+                                 &store->node, err));
+    RIS_TRY(ris_vk_buffer_create(device, RIS_VK_UPLOAD, sizeof(ris_draw_view), data, "draw view",
+                                 &store->view, err));
+    RIS_TRY(
+        fill(device, "draw term start", scene->term_start, (skin + 1) * 4, data, &store->term_start, err));
+    RIS_TRY(fill(device, "draw terms", scene->term, scene->term_count * sizeof *scene->term, data,
+                 &store->term, err));
+    RIS_TRY(
+        fill(device, "draw ring start", scene->ring_start, (skin + 1) * 4, data, &store->ring_start, err));
     RIS_TRY(fill(device, "draw rings", scene->ring, (size_t)scene->ring_count * 8, data, &store->ring, err));
-    RIS_TRY(fill(device, "draw rides", scene->ride, scene->ride_count * sizeof *scene->ride, data, &store->ride, err));
+    RIS_TRY(fill(device, "draw rides", scene->ride, scene->ride_count * sizeof *scene->ride, data,
+                 &store->ride, err));
     RIS_TRY(fill(device, "draw positions", scene->position, vertices * 16, data, &store->position, err));
     RIS_TRY(fill(device, "draw normals", scene->normal, vertices * 16, data, &store->normal, err));
     RIS_TRY(fill(device, "draw rest", scene->rest, vertices * 16, data, &store->rest, err));
-    RIS_TRY(fill(device, "draw corners", scene->corner, scene->corner_count * sizeof *scene->corner, data, &store->corner,
+    RIS_TRY(fill(device, "draw corners", scene->corner, scene->corner_count * sizeof *scene->corner, data,
+                 &store->corner, err));
+    RIS_TRY(fill(device, "draw triangles", scene->index, (size_t)scene->index_count * 4, index, &store->index,
                  err));
-    RIS_TRY(fill(device, "draw triangles", scene->index, (size_t)scene->index_count * 4, index, &store->index, err));
     RIS_TRY(fill(device, "draw lines", scene->line, (size_t)scene->line_count * 4, index, &store->line, err));
     RIS_TRY(ris_vk_image_create(device, &shadow, &draw->shadow, err));
     RIS_TRY(ris_vk_sampler_create(device, VK_SAMPLER_ADDRESS_MODE_REPEAT, 0.0f, &store->sampler, err));
@@ -93,8 +110,9 @@ void ris__draw_store_finish(ris_draw *draw)
 {
     ris_device *device = draw->device;
     ris_draw_store *store = &draw->store;
-    ris_vk_buffer *all[] = {&store->node, &store->view, &store->term_start, &store->term, &store->ring_start, &store->ring,
-                            &store->ride, &store->position, &store->normal, &store->rest, &store->corner, &store->index,
+    ris_vk_buffer *all[] = {&store->node,       &store->view, &store->term_start, &store->term,
+                            &store->ring_start, &store->ring, &store->ride,       &store->position,
+                            &store->normal,     &store->rest, &store->corner,     &store->index,
                             &store->line};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
         ris_vk_buffer_finish(device, all[i]);

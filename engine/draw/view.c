@@ -41,7 +41,8 @@ static bool frame_eyes(const ris_head *head, ris_vec3 *centre, float *half, floa
         return false;
     }
     float span = left->pivot.x - right->pivot.x;
-    *centre = (ris_vec3){0.5f * (left->pivot.x + right->pivot.x), 0.5f * (left->pivot.y + right->pivot.y) - 0.22f * span,
+    *centre = (ris_vec3){0.5f * (left->pivot.x + right->pivot.x),
+                         0.5f * (left->pivot.y + right->pivot.y) - 0.22f * span,
                          0.5f * (left->pivot.z + right->pivot.z) - 0.55f * span};
     *half = 2.12f * span;
     *depth = 0.6f * span;
@@ -85,7 +86,9 @@ bool ris_camera_named(const ris_model *model, const char *name, ris_camera *out)
     float away = half / tanf(0.5f * fov_deg * PI / 180.0f) + depth;
     float turn = turn_deg * PI / 180.0f;
     *out = (ris_camera){.eye = {centre.x + away * sinf(turn), centre.y, centre.z + away * cosf(turn)},
-                        .target = centre, .up = {0.0f, 1.0f, 0.0f}, .fov_y_deg = fov_deg};
+                        .target = centre,
+                        .up = {0.0f, 1.0f, 0.0f},
+                        .fov_y_deg = fov_deg};
     return true;
 }
 
@@ -118,7 +121,8 @@ static ris_vec4 lamp(float x, float y, float z, float half_angle)
     return (ris_vec4){d.x, d.y, d.z, half_angle};
 }
 
-void ris__draw_view_fill(const ris_draw *draw, const ris_camera *camera, const float head[12], ris_draw_view *out)
+void ris__draw_view_fill(const ris_draw *draw, const ris_camera *camera, const float head[12],
+                         ris_draw_view *out)
 {
     const ris_draw_scene *scene = &draw->scene;
     ris_vec3 c = {0.5f * (scene->low.x + scene->high.x), 0.5f * (scene->low.y + scene->high.y),
@@ -131,11 +135,11 @@ void ris__draw_view_fill(const ris_draw *draw, const ris_camera *camera, const f
     ris_vec3 to_eye = minus(camera->eye, centre);
     float distance = sqrtf(dot(to_eye, to_eye));
     float near = fmaxf(distance - 1.2f * radius, 0.02f * radius), far = distance + 1.5f * radius;
-    *out = (ris_draw_view){.eye = {camera->eye.x, camera->eye.y, camera->eye.z,
-                                   tanf(0.5f * camera->fov_y_deg * PI / 180.0f)}};
+    *out = (ris_draw_view){
+        .eye = {camera->eye.x, camera->eye.y, camera->eye.z, tanf(0.5f * camera->fov_y_deg * PI / 180.0f)}};
     camera_rows(camera, (float)draw->target.width / (float)draw->target.height, near, far, out->clip);
     /* key from the upper right of the picture, fill low from the left, rim from behind */
-    out->light[0] = lamp(0.62f, 0.62f, 0.85f, 0.26f);
+    out->light[0] = lamp(0.62f, 0.62f, 0.85f, 0.33f);
     out->light[1] = lamp(-0.85f, 0.10f, 0.75f, 0.34f);
     out->light[2] = lamp(-0.75f, 0.45f, -0.70f, 0.30f);
     out->radiance[0] = (ris_vec4){1.46f, 1.36f, 1.24f, 0.0f};

@@ -37,7 +37,8 @@ void ris_pc2_abandon(ris_pc2 *cache)
     }
 }
 
-ris_result ris_pc2_open(const char *path, uint32_t point_count, float start_frame, float rate, ris_pc2 **out, ris_error *err)
+ris_result ris_pc2_open(const char *path, uint32_t point_count, float start_frame, float rate, ris_pc2 **out,
+                        ris_error *err)
 {
     *out = NULL;
     if (point_count == 0 || point_count > INT32_MAX / 12) {
@@ -91,7 +92,8 @@ ris_result ris_pc2_close(ris_pc2 *cache, ris_error *err)
     put_u32(count, cache->sample_count);
     ris_result result;
     if (fseek(cache->file.stream, 28, SEEK_SET) != 0) {
-        result = ris_fail(err, RIS_ERROR_FAILED, "cannot write \"%s\": its header cannot be completed", cache->file.path);
+        result = ris_fail(err, RIS_ERROR_FAILED, "cannot write \"%s\": its header cannot be completed",
+                          cache->file.path);
     } else {
         result = ris__output_write(&cache->file, count, sizeof count, err);
     }

@@ -32,11 +32,12 @@ static void take(void *context, void *data, int size)
     to->size += (size_t)size;
 }
 
-ris_result ris_png_write(const char *path, const uint8_t *rgba, uint32_t width, uint32_t height, ris_error *err)
+ris_result ris_png_write(const char *path, const uint8_t *rgba, uint32_t width, uint32_t height,
+                         ris_error *err)
 {
     if (width == 0 || height == 0 || width > 16384 || height > 16384) {
-        return ris_fail(err, RIS_ERROR_USAGE, "picture \"%s\": sides must be 1 to 16384 pixels, found %ux%u", path,
-                        (unsigned)width, (unsigned)height);
+        return ris_fail(err, RIS_ERROR_USAGE, "picture \"%s\": sides must be 1 to 16384 pixels, found %ux%u",
+                        path, (unsigned)width, (unsigned)height);
     }
     /* three channels: every picture here is opaque */
     uint8_t *rgb = malloc((size_t)width * height * 3);

@@ -116,19 +116,9 @@ void ris_video_abandon(ris_video *video)
     free(video);
 }
 
-/* Starts ffmpeg with in_fd as its input; returns 0 or an errno. */
-static int start_program(ris_video *video, int in_fd, uint32_t fps)
+/* Runs argv with in_fd as input, what it says in the log, and default signals; returns 0 or an errno. */
+static int spawn(ris_video *video, int in_fd, char *const *argv)
 {
-    char size[32], rate[16];
-    snprintf(size, sizeof size, "%ux%u", (unsigned)video->width, (unsigned)video->height);
-    snprintf(rate, sizeof rate, "%u", (unsigned)fps);
-    char target[RIS_PATH_SIZE + 8];
-    snprintf(target, sizeof target, "file:%s", video->temporary);
-    char *const argv[] = {"ffmpeg", "-xerror", "-nostdin", "-loglevel", "error", "-y", "-f", "rawvideo", "-pixel_format", "rgba",
-                          "-video_size", size, "-framerate", rate, "-i", "pipe:0", "-vf",
-                          "scale=out_color_matrix=bt709:out_range=tv", "-c:v", "libx264", "-preset", "veryfast", "-crf",
-                          "18", "-pix_fmt", "yuv420p", "-colorspace", "bt709", "-color_primaries", "bt709",
-                          "-color_trc", "bt709", "-f", "mp4", target, NULL};
     posix_spawn_file_actions_t actions;
     posix_spawnattr_t attributes;
     sigset_t none, defaults;
@@ -154,6 +144,53 @@ static int start_program(ris_video *video, int in_fd, uint32_t fps)
     return failure;
 }
 
+/* Starts ffmpeg for raw frames from in_fd; returns 0 or an errno. */
+static int start_program(ris_video *video, int in_fd, uint32_t fps)
+{
+    char size[32], rate[16];
+    snprintf(size, sizeof size, "%ux%u", (unsigned)video->width, (unsigned)video->height);
+    snprintf(rate, sizeof rate, "%u", (unsigned)fps);
+    char target[RIS_PATH_SIZE + 8];
+    snprintf(target, sizeof target, "file:%s", video->temporary);
+    char *const argv[] = {"ffmpeg",
+                          "-xerror",
+                          "-nostdin",
+                          "-loglevel",
+                          "error",
+                          "-y",
+                          "-f",
+                          "rawvideo",
+                          "-pixel_format",
+                          "rgba",
+                          "-video_size",
+                          size,
+                          "-framerate",
+                          rate,
+                          "-i",
+                          "pipe:0",
+                          "-vf",
+                          "scale=out_color_matrix=bt709:out_range=tv",
+                          "-c:v",
+                          "libx264",
+                          "-preset",
+                          "veryfast",
+                          "-crf",
+                          "18",
+                          "-pix_fmt",
+                          "yuv420p",
+                          "-colorspace",
+                          "bt709",
+                          "-color_primaries",
+                          "bt709",
+                          "-color_trc",
+                          "bt709",
+                          "-f",
+                          "mp4",
+                          target,
+                          NULL};
+    return spawn(video, in_fd, argv);
+}
+
 /* Reserves the temporary file beside path, so that an unwritable place is told before ffmpeg starts. */
 static ris_result reserve(ris_video *video, ris_error *err)
 {
@@ -171,16 +208,18 @@ static ris_result reserve(ris_video *video, ris_error *err)
     return RIS_OK;
 }
 
-ris_result ris_video_open(const char *path, uint32_t width, uint32_t height, uint32_t fps, ris_video **out, ris_error *err)
+ris_result ris_video_open(const char *path, uint32_t width, uint32_t height, uint32_t fps, ris_video **out,
+                          ris_error *err)
 {
     *out = NULL;
     if (width == 0 || height == 0 || width % 2 != 0 || height % 2 != 0 || width > 16384 || height > 16384) {
-        return ris_fail(err, RIS_ERROR_USAGE, "video \"%s\": the size must be even and at most 16384, found %ux%u", path,
+        return ris_fail(err, RIS_ERROR_USAGE,
+                        "video \"%s\": the size must be even and at most 16384, found %ux%u", path,
                         (unsigned)width, (unsigned)height);
     }
     if (fps == 0 || fps > 1000) {
-        return ris_fail(err, RIS_ERROR_USAGE, "video \"%s\": frames per second must be 1 to 1000, found %u", path,
-                        (unsigned)fps);
+        return ris_fail(err, RIS_ERROR_USAGE, "video \"%s\": frames per second must be 1 to 1000, found %u",
+                        path, (unsigned)fps);
     }
     int ends[2] = {-1, -1};
     ris_video *video = calloc(1, sizeof *video);
@@ -189,7 +228,8 @@ ris_result ris_video_open(const char *path, uint32_t width, uint32_t height, uin
     }
     if ((size_t)snprintf(video->path, sizeof video->path, "%s", path) >= sizeof video->path) {
         free(video);
-        return ris_fail(err, RIS_ERROR_USAGE, "the path of the video is longer than %d bytes", RIS_PATH_SIZE - 1);
+        return ris_fail(err, RIS_ERROR_USAGE, "the path of the video is longer than %d bytes",
+                        RIS_PATH_SIZE - 1);
     }
     video->pipe = -1;
     video->width = width;
@@ -209,8 +249,10 @@ ris_result ris_video_open(const char *path, uint32_t width, uint32_t height, uin
     close(ends[0]);
     video->pipe = ends[1];
     if (failure == ENOENT) {
-        result = ris_fail(err, RIS_ERROR_FAILED, "cannot write \"%s\": the ffmpeg program was not found; install ffmpeg "
-                          "or write PNG frames instead", path);
+        result = ris_fail(err, RIS_ERROR_FAILED,
+                          "cannot write \"%s\": the ffmpeg program was not found; install ffmpeg "
+                          "or write PNG frames instead",
+                          path);
         goto fail;
     }
     if (failure != 0) {
@@ -256,7 +298,8 @@ ris_result ris_video_close(ris_video *video, ris_error *err)
         if (status != 0) {
             result = fail_program(video, status, err);
         } else if (line[0] != '\0') { /* it may end with 0 although its last write failed */
-            result = ris_fail(err, RIS_ERROR_FAILED, "cannot write \"%s\": the ffmpeg program says: %s", video->path, line);
+            result = ris_fail(err, RIS_ERROR_FAILED, "cannot write \"%s\": the ffmpeg program says: %s",
+                              video->path, line);
         } else {
             result = ris__temporary_commit(video->temporary, video->path, err);
             video->temporary[0] = '\0';

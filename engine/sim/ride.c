@@ -38,7 +38,8 @@ static ris_vec3 xyz(ris_vec4 v)
 static void nearest_shares(ris_vec3 p, ris_vec3 a, ris_vec3 b, ris_vec3 c, float s[3])
 {
     ris_vec3 ab = sub(b, a), ac = sub(c, a), ap = sub(p, a), bp = sub(p, b), cp = sub(p, c);
-    float d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp), d6 = dot(ac, cp);
+    float d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp),
+          d6 = dot(ac, cp);
     s[0] = s[1] = s[2] = 0.0f;
     if (d1 <= 0.0f && d2 <= 0.0f) {
         s[0] = 1.0f;
@@ -107,7 +108,8 @@ ris_vec3 ris__ride_offset(ris_vec3 p, ris_vec3 a, ris_vec3 b, ris_vec3 c, const 
 
 ris_vec3 ris__ride_place(const ris_ride *ride, const ris_vec4 *position)
 {
-    ris_vec3 a = xyz(position[ride->vertex[0]]), b = xyz(position[ride->vertex[1]]), c = xyz(position[ride->vertex[2]]);
+    ris_vec3 a = xyz(position[ride->vertex[0]]), b = xyz(position[ride->vertex[1]]),
+             c = xyz(position[ride->vertex[2]]);
     ris_vec3 frame[3], at = blend(a, b, c, ride->share);
     if (ris__ride_frame(a, b, c, frame)) {
         const float along[3] = {ride->offset.x, ride->offset.y, ride->offset.z};
@@ -135,7 +137,8 @@ static span *sort_spans(const ris_model *model, float *out_widest)
     *out_widest = 0.0f;
     for (uint32_t t = 0; all != NULL && t < model->triangle_count; t++) {
         const uint32_t *n = model->triangle + 3 * (size_t)t;
-        float a = model->rest_position[n[0]].x, b = model->rest_position[n[1]].x, c = model->rest_position[n[2]].x;
+        float a = model->rest_position[n[0]].x, b = model->rest_position[n[1]].x,
+              c = model->rest_position[n[2]].x;
         all[t] = (span){fminf(fminf(a, b), c), fmaxf(fmaxf(a, b), c), t};
         *out_widest = fmaxf(*out_widest, all[t].high - all[t].low);
     }
@@ -148,8 +151,9 @@ static span *sort_spans(const ris_model *model, float *out_widest)
 static void try_triangle(const ris_model *model, uint32_t t, ris_vec3 p, uint32_t *triangle, float *distance2)
 {
     const uint32_t *n = model->triangle + 3 * (size_t)t;
-    float share[3], d2 = ris__ride_nearest(p, xyz(model->rest_position[n[0]]), xyz(model->rest_position[n[1]]),
-                                           xyz(model->rest_position[n[2]]), share);
+    float share[3],
+        d2 = ris__ride_nearest(p, xyz(model->rest_position[n[0]]), xyz(model->rest_position[n[1]]),
+                               xyz(model->rest_position[n[2]]), share);
     if (d2 < *distance2) {
         *distance2 = d2;
         *triangle = t;
@@ -158,8 +162,8 @@ static void try_triangle(const ris_model *model, uint32_t t, ris_vec3 p, uint32_
 
 /* Nearest skin triangle of every mesh vertex: triangles sorted along x, tried outwards from the vertex until the gap
  * along x alone is larger than the best distance. */
-static void find_nearest(const ris_model *model, const span *all, float widest, const ris_mesh *mesh, uint32_t *triangle,
-                         float *distance2)
+static void find_nearest(const ris_model *model, const span *all, float widest, const ris_mesh *mesh,
+                         uint32_t *triangle, float *distance2)
 {
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
         ris_vec3 p = mesh->position[v];
@@ -250,7 +254,8 @@ ris_result ris__ride_bind(const ris_model *model, const ris_mesh *mesh, ris_ride
     return RIS_OK;
 }
 
-ris_result ris_sim_part(const ris_sim *sim, uint32_t part, const ris_vec4 *position, ris_vec4 *out, ris_error *err)
+ris_result ris_sim_part(const ris_sim *sim, uint32_t part, const ris_vec4 *position, ris_vec4 *out,
+                        ris_error *err)
 {
     const ris_model *model = ris_sim_get_model(sim);
     if (part >= model->head->part_count) {
@@ -276,7 +281,8 @@ ris_result ris_sim_part(const ris_sim *sim, uint32_t part, const ris_vec4 *posit
     ris_sim_bone_transform(sim, def->bone, m);
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
         ris_vec3 p = mesh->position[v];
-        out[v] = (ris_vec4){m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3], m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
+        out[v] = (ris_vec4){m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3],
+                            m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
                             m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11], 1.0f};
     }
     return RIS_OK;

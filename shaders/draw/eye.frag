@@ -28,5 +28,6 @@ void main()
     }
     diffuse += ambient(n);
     vec3 lids = pow(vec3(ao), vec3(1.05, 1.25, 1.3)) * 0.92;
+    diffuse *= 1.0 + 0.35 * iris;
     out_color = vec4(tone(albedo * diffuse * lids + shine * ao * 2.0), 1.0);
 }

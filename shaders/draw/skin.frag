@@ -41,7 +41,7 @@ void main()
         vec3 through = k == 0 ? lit * (vec3(1.5, 0.95, 0.8) - lit * vec3(0.5, -0.05, -0.2)) : open;
         float bare = dot(n, l), deep = dot(soft, l);
         diffuse += view.radiance[k].rgb * wrapped(deep * vec3(1.0, 0.4, 0.0) + bare * vec3(0.0, 0.6, 1.0), spread) * through;
-        shine += view.radiance[k].rgb * (specular2(n, v, l, rough, 0.028, 0.25, 0.6) * (k == 0 ? lit : ao) * gloss);
+        shine += view.radiance[k].rgb * (specular2(n, v, l, rough, 0.028, 0.25, 0.6) * (k == 0 ? lit : k == 1 ? ao : 0.4 * ao) * gloss);
     }
     // soft reflection of the room at grazing angles
     float grazing = fifth(1.0 - clamp(dot(n, v), 0.0, 1.0));

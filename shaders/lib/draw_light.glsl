@@ -76,7 +76,7 @@ vec3 studio(vec3 r)
 // a filmic shoulder (Narkowicz's fit of the ACES curve), less contrast
 vec3 tone(vec3 c)
 {
-    c *= 0.74;
+    c *= 0.64;
     return clamp((c * (2.51 * c + 0.03)) / (c * (2.43 * c + 0.59) + 0.14), 0.0, 1.0);
 }
 

@@ -36,7 +36,8 @@
 #define RIS_DRAW_BIND_FRAME 0  /* ris_draw_view */
 #define RIS_DRAW_BIND_AT 1     /* vec4 (surface vertices): position */
 #define RIS_DRAW_BIND_FACING 2 /* vec4 (surface vertices): normal */
-#define RIS_DRAW_BIND_REST 3   /* vec4 (surface vertices): position at rest, w = visible share of the surroundings */
+#define RIS_DRAW_BIND_REST                                                                                   \
+    3 /* vec4 (surface vertices): position at rest, w = visible share of the surroundings */
 #define RIS_DRAW_BIND_CORNER 4 /* ris_draw_corner */
 #define RIS_DRAW_BIND_COLOR 5  /* texture, sRGB */
 #define RIS_DRAW_BIND_DETAIL 6 /* texture beside it, linear: R height (0.5 = mean), G oil, B thinness */
@@ -44,50 +45,64 @@
 #define RIS_DRAW_BIND_GRAPHICS_COUNT 8
 
 /* One node's share of a surface vertex. */
-RIS_DRAW_STRUCT(ris_draw_term) {
+RIS_DRAW_STRUCT(ris_draw_term)
+{
     ris_draw_uint source;
     ris_draw_float weight;
-} RIS_DRAW_STRUCT_END(ris_draw_term);
+}
+RIS_DRAW_STRUCT_END(ris_draw_term);
 
 /* A vertex of a skin-bound part on a triangle of the skin surface (engine/sim/ride.h). */
-RIS_DRAW_STRUCT(ris_draw_ride) {
+RIS_DRAW_STRUCT(ris_draw_ride)
+{
     ris_draw_uint a, b, c, target; /* skin surface vertices, surface vertex written */
     ris_draw_v4 share;             /* barycentric, w unused */
     ris_draw_v4 offset;            /* mm in the triangle's frame, w unused */
     ris_draw_v4 normal;            /* unit, in the triangle's frame, w unused */
-} RIS_DRAW_STRUCT_END(ris_draw_ride);
+}
+RIS_DRAW_STRUCT_END(ris_draw_ride);
 
 /* What one drawn triangle corner needs: a surface vertex and its place in the texture (v down). */
-RIS_DRAW_STRUCT(ris_draw_corner) {
+RIS_DRAW_STRUCT(ris_draw_corner)
+{
     ris_draw_uint vertex;
     ris_draw_float u, v;
-} RIS_DRAW_STRUCT_END(ris_draw_corner);
+}
+RIS_DRAW_STRUCT_END(ris_draw_corner);
 
 /* Push constants of the compute stages. */
-RIS_DRAW_STRUCT(ris_draw_count) {
+RIS_DRAW_STRUCT(ris_draw_count)
+{
     ris_draw_uint count;
-} RIS_DRAW_STRUCT_END(ris_draw_count);
+}
+RIS_DRAW_STRUCT_END(ris_draw_count);
 
 /* Everything that is the same for the whole frame. Matrices as rows: clip = row . (position, 1). */
-RIS_DRAW_STRUCT(ris_draw_view) {
-    ris_draw_v4 clip[4];      /* world to clip space */
-    ris_draw_v4 shadow[4];    /* world to the key light's clip space */
-    ris_draw_v4 eye;          /* camera, mm; w = tangent of half the vertical field of view */
-    ris_draw_v4 light[3];     /* key, fill, rim: unit direction towards the light, w = half angle of the lamp, radians */
-    ris_draw_v4 radiance[3];  /* linear RGB, w unused */
-    ris_draw_v4 sky, ground;  /* ambient from above and below, linear RGB */
-    ris_draw_v4 mouth;        /* x = depth of the teeth's front at rest, mm; y = fall-off, mm */
-    ris_draw_uint lip[2];     /* surface vertices in the middle of the upper and lower lip's edge; equal = none */
-    ris_draw_float fade[2];   /* the bust melts into the backdrop between these heights at rest, mm; equal = never */
-    ris_draw_v4 size;         /* width, height in pixels, shadow texels per side, mm per shadow texel */
-} RIS_DRAW_STRUCT_END(ris_draw_view);
+RIS_DRAW_STRUCT(ris_draw_view)
+{
+    ris_draw_v4 clip[4];   /* world to clip space */
+    ris_draw_v4 shadow[4]; /* world to the key light's clip space */
+    ris_draw_v4 eye;       /* camera, mm; w = tangent of half the vertical field of view */
+    ris_draw_v4
+        light[3]; /* key, fill, rim: unit direction towards the light, w = half angle of the lamp, radians */
+    ris_draw_v4 radiance[3]; /* linear RGB, w unused */
+    ris_draw_v4 sky, ground; /* ambient from above and below, linear RGB */
+    ris_draw_v4 mouth;       /* x = depth of the teeth's front at rest, mm; y = fall-off, mm */
+    ris_draw_uint lip[2]; /* surface vertices in the middle of the upper and lower lip's edge; equal = none */
+    ris_draw_float
+        fade[2];      /* the bust melts into the backdrop between these heights at rest, mm; equal = never */
+    ris_draw_v4 size; /* width, height in pixels, shadow texels per side, mm per shadow texel */
+}
+RIS_DRAW_STRUCT_END(ris_draw_view);
 
 /* Push constants of the graphics stages: one object. */
-RIS_DRAW_STRUCT(ris_draw_object) {
+RIS_DRAW_STRUCT(ris_draw_object)
+{
     ris_draw_v4 place[3]; /* rows: bone, then head pose */
     ris_draw_v4 tint;     /* linear RGB where there is no texture; w = 1 with a texture */
     ris_draw_v4 pivot;    /* centre of an eye at rest, mm; w = relief of the detail texture, mm */
-} RIS_DRAW_STRUCT_END(ris_draw_object);
+}
+RIS_DRAW_STRUCT_END(ris_draw_object);
 
 #ifdef RIS_GLSL
 #undef RIS_DRAW_STRUCT

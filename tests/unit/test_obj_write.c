@@ -23,7 +23,8 @@ static void test_round_trip(void **state)
     ris_mesh mesh = parse(), back;
     ris_vec4 moved[5];
     for (uint32_t i = 0; i < 5; i++) {
-        moved[i] = (ris_vec4){mesh.position[i].x + 1.5f, mesh.position[i].y - 0.125f, mesh.position[i].z, 0.0f};
+        moved[i] =
+            (ris_vec4){mesh.position[i].x + 1.5f, mesh.position[i].y - 0.125f, mesh.position[i].z, 0.0f};
     }
     const ris_obj_object object = {"skin", &mesh, moved};
     const char *path = scratch_path("a.obj");
@@ -36,7 +37,8 @@ static void test_round_trip(void **state)
     assert_memory_equal(back.face_vertex, mesh.face_vertex, 7 * sizeof *mesh.face_vertex);
     assert_memory_equal(back.face_uv, mesh.face_uv, 7 * sizeof *mesh.face_uv);
     for (uint32_t i = 0; i < 5; i++) {
-        assert_true(back.position[i].x == moved[i].x && back.position[i].y == moved[i].y && back.position[i].z == moved[i].z);
+        assert_true(back.position[i].x == moved[i].x && back.position[i].y == moved[i].y &&
+                    back.position[i].z == moved[i].z);
     }
     ris_mesh_finish(&back);
     ris_mesh_finish(&mesh);
@@ -58,7 +60,8 @@ static void test_text(void **state)
     assert_non_null(strstr(text, "\nv 0.123457 -2.000000 0.000000\n"));
     assert_non_null(strstr(text, "\no tongue\n"));
     assert_non_null(strstr(text, "\nf 1/1 2/2 3/3 4/4\n"));
-    assert_non_null(strstr(text, "\nf 6/5 7/6 8/7 9/8\n")); /* indices of the second object go on from the first */
+    assert_non_null(
+        strstr(text, "\nf 6/5 7/6 8/7 9/8\n")); /* indices of the second object go on from the first */
     free(text);
     ris_mesh_finish(&mesh);
     assert_int_equal(scratch_count(), 1);
@@ -72,7 +75,8 @@ static void test_unwritable(void **state)
     ris_mesh mesh = parse();
     const ris_vec4 at[5] = {{0}};
     const ris_obj_object object = {"skin", &mesh, at};
-    expect_error(&err, ris_obj_write(scratch_path("no/a.obj"), &object, 1, &err), RIS_ERROR_FAILED, "no/a.obj");
+    expect_error(&err, ris_obj_write(scratch_path("no/a.obj"), &object, 1, &err), RIS_ERROR_FAILED,
+                 "no/a.obj");
     expect_error(&err, ris_obj_write("/dev/full", &object, 1, &err), RIS_ERROR_FAILED, "No space left");
     ris_mesh_finish(&mesh);
     assert_int_equal(scratch_count(), 0);

@@ -66,9 +66,11 @@ static void test_refused(void **state)
     (void)state;
     ris_error err = {0};
     ris_pc2 *cache = NULL;
-    expect_error(&err, ris_pc2_open(scratch_path("c.pc2"), 0, 0.0f, 1.0f, &cache, &err), RIS_ERROR_USAGE, "found 0");
+    expect_error(&err, ris_pc2_open(scratch_path("c.pc2"), 0, 0.0f, 1.0f, &cache, &err), RIS_ERROR_USAGE,
+                 "found 0");
     assert_null(cache);
-    expect_error(&err, ris_pc2_open(scratch_path("no/c.pc2"), 1, 0.0f, 1.0f, &cache, &err), RIS_ERROR_FAILED, "no/c.pc2");
+    expect_error(&err, ris_pc2_open(scratch_path("no/c.pc2"), 1, 0.0f, 1.0f, &cache, &err), RIS_ERROR_FAILED,
+                 "no/c.pc2");
     assert_null(cache);
     assert_int_equal(scratch_count(), 0);
 }

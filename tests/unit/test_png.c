@@ -55,7 +55,8 @@ static void test_sizes(void **state)
     ris_error err = {0};
     uint8_t pixel[4] = {0};
     expect_error(&err, ris_png_write(scratch_path("a.png"), pixel, 0, 1, &err), RIS_ERROR_USAGE, "found 0x1");
-    expect_error(&err, ris_png_write(scratch_path("a.png"), pixel, 1, 100000, &err), RIS_ERROR_USAGE, "1x100000");
+    expect_error(&err, ris_png_write(scratch_path("a.png"), pixel, 1, 100000, &err), RIS_ERROR_USAGE,
+                 "1x100000");
     assert_int_equal(scratch_count(), 0);
 }
 
@@ -64,7 +65,8 @@ static void test_unwritable(void **state)
     (void)state;
     ris_error err = {0};
     uint8_t pixel[4] = {0};
-    expect_error(&err, ris_png_write(scratch_path("no/such/a.png"), pixel, 1, 1, &err), RIS_ERROR_FAILED, "no/such/a.png");
+    expect_error(&err, ris_png_write(scratch_path("no/such/a.png"), pixel, 1, 1, &err), RIS_ERROR_FAILED,
+                 "no/such/a.png");
     expect_error(&err, ris_png_write(scratch_folder, pixel, 1, 1, &err), RIS_ERROR_FAILED, scratch_folder);
     expect_error(&err, ris_png_write("/dev/full", pixel, 1, 1, &err), RIS_ERROR_FAILED, "No space left");
     assert_int_equal(scratch_count(), 0);
@@ -85,7 +87,8 @@ static void test_full_disk(void **state)
         const struct rlimit limit = {1000, 1000};
         signal(SIGXFSZ, SIG_IGN);
         setrlimit(RLIMIT_FSIZE, &limit);
-        bool told = ris_png_write(path, pixels, side, side, &err) == RIS_ERROR_FAILED && strstr(err.text, "File too large");
+        bool told = ris_png_write(path, pixels, side, side, &err) == RIS_ERROR_FAILED &&
+                    strstr(err.text, "File too large");
         _exit(told ? 0 : 1);
     }
     int status;

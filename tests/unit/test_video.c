@@ -48,8 +48,10 @@ static void test_writes(void **state)
     assert_int_equal(ris_video_close(video, &err), RIS_OK);
     assert_int_equal(scratch_count(), 1);
     char command[4096], told[256] = "";
-    snprintf(command, sizeof command, "ffprobe -v error -count_frames -select_streams v -show_entries "
-             "stream=codec_name,width,height,pix_fmt,nb_read_frames -of csv=p=0 \"%s\"", path);
+    snprintf(command, sizeof command,
+             "ffprobe -v error -count_frames -select_streams v -show_entries "
+             "stream=codec_name,width,height,pix_fmt,nb_read_frames -of csv=p=0 \"%s\"",
+             path);
     FILE *probe = popen(command, "r");
     assert_non_null(probe);
     assert_non_null(fgets(told, sizeof told, probe));
@@ -63,10 +65,14 @@ static void test_refused(void **state)
     (void)state;
     ris_error err = {0};
     ris_video *video = NULL;
-    expect_error(&err, ris_video_open(scratch_path("a.mp4"), 63, 48, 25, &video, &err), RIS_ERROR_USAGE, "63x48");
-    expect_error(&err, ris_video_open(scratch_path("a.mp4"), 0, 48, 25, &video, &err), RIS_ERROR_USAGE, "0x48");
-    expect_error(&err, ris_video_open(scratch_path("a.mp4"), 64, 48, 0, &video, &err), RIS_ERROR_USAGE, "found 0");
-    expect_error(&err, ris_video_open(scratch_path("no/a.mp4"), 64, 48, 25, &video, &err), RIS_ERROR_FAILED, "no/a.mp4");
+    expect_error(&err, ris_video_open(scratch_path("a.mp4"), 63, 48, 25, &video, &err), RIS_ERROR_USAGE,
+                 "63x48");
+    expect_error(&err, ris_video_open(scratch_path("a.mp4"), 0, 48, 25, &video, &err), RIS_ERROR_USAGE,
+                 "0x48");
+    expect_error(&err, ris_video_open(scratch_path("a.mp4"), 64, 48, 0, &video, &err), RIS_ERROR_USAGE,
+                 "found 0");
+    expect_error(&err, ris_video_open(scratch_path("no/a.mp4"), 64, 48, 25, &video, &err), RIS_ERROR_FAILED,
+                 "no/a.mp4");
     assert_null(video);
     assert_int_equal(scratch_count(), 0);
 }

@@ -24,7 +24,8 @@ typedef struct ris_draw_def {
 } ris_draw_def;
 
 /* Loads textures and parts of the model's head to the device. Errors: RIS_ERROR_DEVICE, RIS_ERROR_DATA (textures). */
-ris_result ris_draw_create(ris_device *device, const ris_model *model, const ris_draw_def *def, ris_draw **out, ris_error *err);
+ris_result ris_draw_create(ris_device *device, const ris_model *model, const ris_draw_def *def,
+                           ris_draw **out, ris_error *err);
 void ris_draw_destroy(ris_draw *draw);
 ris_result ris_draw_resize(ris_draw *draw, uint32_t width, uint32_t height, ris_error *err);
 void ris_draw_set_wireframe(ris_draw *draw, bool wireframe);
@@ -39,9 +40,11 @@ ris_result ris_draw_read(ris_draw *draw, uint8_t *out, ris_error *err);
 /* A window's swapchain: surface is a VkSurfaceKHR as a 64-bit handle made with ris_device_instance(). */
 void *ris_device_instance(ris_device *device);
 typedef struct ris_window ris_window;
-ris_result ris_window_create(ris_device *device, uint64_t surface, uint32_t width, uint32_t height, ris_window **out, ris_error *err);
+ris_result ris_window_create(ris_device *device, uint64_t surface, uint32_t width, uint32_t height,
+                             ris_window **out, ris_error *err);
 /* Shows the last drawn frame; rebuilds the swapchain by itself; a zero-sized (minimised) window is skipped. */
-ris_result ris_window_present(ris_window *window, ris_draw *draw, uint32_t width, uint32_t height, ris_error *err);
+ris_result ris_window_present(ris_window *window, ris_draw *draw, uint32_t width, uint32_t height,
+                              ris_error *err);
 void ris_window_destroy(ris_window *window);
 
 #ifdef __cplusplus

@@ -1,0 +1,211 @@
+/* Offscreen frames against committed pictures, and what must hold between frames: a simulation read in place gives the
+ * picture of the same positions uploaded; drawing twice gives the same bits; poses and cameras change the picture. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "golden.h"
+#include "gpu/gpu.h"
+#include "risorius/draw.h"
+#include "risorius/timeline.h"
+#include "scenes/scenes.h"
+
+enum { WIDTH = 160, HEIGHT = 180, BYTES = WIDTH * HEIGHT * 4 };
+
+static ris_device *device;
+static ris_model *head, *scene;
+
+#define GOOD(call)                                                                                           \
+    do {                                                                                                     \
+        if ((call) != RIS_OK) {                                                                              \
+            fail_msg("%s: %s", #call, err.text);                                                             \
+        }                                                                                                    \
+    } while (0)
+
+/* A simulation of model held at pose ("" = rest). */
+static ris_sim *hold(const ris_model *model, const char *pose, ris_device *on)
+{
+    ris_error err = {0};
+    ris_sim *sim = NULL;
+    float *values = calloc(model->channel_count + 1, sizeof *values);
+    assert_non_null(values);
+    if (on) {
+        GOOD(ris_sim_create_vk(model, on, &sim, &err));
+    } else {
+        GOOD(ris_sim_create_cpu(model, &sim, &err));
+    }
+    if (pose[0]) {
+        GOOD(ris_pose_parse(model, pose, values, &err));
+        for (int i = 0; i < 40; i++) {
+            GOOD(ris_sim_tick(sim, values, &err));
+        }
+    }
+    free(values);
+    return sim;
+}
+
+/* One frame of sim into pixels. */
+static void picture(ris_draw *draw, ris_sim *sim, const char *view, uint8_t *pixels)
+{
+    ris_error err = {0};
+    ris_camera camera;
+    assert_true(ris_camera_named(ris_sim_get_model(sim), view, &camera));
+    GOOD(ris_draw_frame(draw, sim, &camera, &err));
+    GOOD(ris_draw_read(draw, pixels, &err));
+}
+
+static ris_draw *open_draw(const ris_model *model)
+{
+    ris_error err = {0};
+    ris_draw *draw = NULL;
+    const ris_draw_def def = {.width = WIDTH, .height = HEIGHT};
+    GOOD(ris_draw_create(device, model, &def, &draw, &err));
+    return draw;
+}
+
+static void golden_frames(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name, *pose, *view;
+        bool built, wireframe;
+    } frame[] = {
+        {"scene-front", "", "front", true, false},
+        {"scene-wire", "", "34", true, true},
+        {"head-front", "", "front", false, false},
+        {"head-34", "", "34", false, false},
+        {"head-jaw-open", "jaw.open=1", "front", false, false},
+    };
+    static uint8_t pixels[BYTES];
+    ris_draw *draw[2] = {open_draw(scene), open_draw(head)};
+    int different = 0;
+    for (size_t i = 0; i < sizeof frame / sizeof frame[0]; i++) {
+        ris_draw *with = draw[frame[i].built ? 0 : 1];
+        ris_sim *sim = hold(frame[i].built ? scene : head, frame[i].pose, NULL);
+        ris_draw_set_wireframe(with, frame[i].wireframe);
+        picture(with, sim, frame[i].view, pixels);
+        different += !golden_check(frame[i].name, pixels, WIDTH, HEIGHT);
+        ris_sim_destroy(sim);
+    }
+    ris_draw_destroy(draw[0]);
+    ris_draw_destroy(draw[1]);
+    assert_int_equal(different, 0);
+}
+
+/* The comparison must see a picture moved by one pixel, a small change of light everywhere, and a missing reference. */
+static void golden_controls(void **state)
+{
+    (void)state;
+    static uint8_t pixels[BYTES], moved[BYTES];
+    ris_draw *draw = open_draw(head);
+    ris_sim *sim = hold(head, "", NULL);
+    picture(draw, sim, "front", pixels);
+    assert_true(golden_within(golden_compare(pixels, pixels, WIDTH, HEIGHT), GOLDEN_LIMIT));
+    memcpy(moved, pixels, 4);
+    memcpy(moved + 4, pixels, BYTES - 4);
+    assert_false(golden_within(golden_compare(pixels, moved, WIDTH, HEIGHT), GOLDEN_LIMIT));
+    for (int i = 0; i < BYTES; i++) {
+        moved[i] = (uint8_t)(pixels[i] < 254 ? pixels[i] + 2 : 255);
+    }
+    assert_false(golden_within(golden_compare(pixels, moved, WIDTH, HEIGHT), GOLDEN_LIMIT));
+    char *update = getenv("RIS_UPDATE_GOLDEN") ? strdup(getenv("RIS_UPDATE_GOLDEN")) : NULL;
+    unsetenv("RIS_UPDATE_GOLDEN");
+    assert_false(golden_check("no-such-reference", pixels, WIDTH, HEIGHT));
+    if (update) {
+        setenv("RIS_UPDATE_GOLDEN", update, 1);
+        free(update);
+    }
+    ris_sim_destroy(sim);
+    ris_draw_destroy(draw);
+}
+
+static void in_place_equals_uploaded(void **state)
+{
+    (void)state;
+    static uint8_t there[BYTES], here[BYTES], given[BYTES];
+    ris_error err = {0};
+    ris_camera camera;
+    ris_draw *draw = open_draw(head);
+    ris_sim *vk = hold(head, "zygomaticus_major=1,jaw.open=0.3", device),
+            *cpu = hold(head, "zygomaticus_major=1,jaw.open=0.3", NULL);
+    ris_vec4 *position = calloc(head->node_count, sizeof *position),
+             *normal = calloc(head->node_count, sizeof *normal);
+    assert_true(position && normal && ris_camera_named(head, "34", &camera));
+    picture(draw, vk, "34", there);
+    picture(draw, cpu, "34", here);
+    GOOD(ris_sim_read(vk, RIS_STATE_POSITION, position, &err));
+    GOOD(ris_sim_read(vk, RIS_STATE_NORMAL, normal, &err));
+    GOOD(ris_draw_frame_at(draw, vk, position, normal, &camera, &err));
+    GOOD(ris_draw_read(draw, given, &err));
+    assert_memory_equal(there, given, BYTES);
+    if (test_gpu_is_lavapipe(device)) {
+        assert_memory_equal(there, here, BYTES);
+    }
+    assert_true(golden_within(golden_compare(there, here, WIDTH, HEIGHT), GOLDEN_LIMIT));
+    ris_sim_destroy(cpu);
+    cpu = hold(head, "", NULL);
+    picture(draw, cpu, "34", here);
+    assert_false(
+        golden_within(golden_compare(there, here, WIDTH, HEIGHT), GOLDEN_LIMIT)); /* the pose is seen */
+    free(position);
+    free(normal);
+    ris_sim_destroy(vk);
+    ris_sim_destroy(cpu);
+    ris_draw_destroy(draw);
+}
+
+static void resize_and_repeat(void **state)
+{
+    (void)state;
+    static uint8_t first[BYTES], again[BYTES];
+    ris_error err = {0};
+    ris_draw *draw = open_draw(scene);
+    ris_sim *sim = hold(scene, "", NULL);
+    assert_int_equal(ris_draw_read(draw, first, &err), RIS_ERROR_USAGE); /* nothing drawn yet */
+    picture(draw, sim, "front", first);
+    picture(draw, sim, "front", again);
+    assert_memory_equal(first, again, BYTES);
+    GOOD(ris_draw_resize(draw, 33, 77, &err));
+    assert_int_equal(ris_draw_read(draw, again, &err), RIS_ERROR_USAGE);
+    picture(draw, sim, "front", again);
+    GOOD(ris_draw_resize(draw, WIDTH, HEIGHT, &err));
+    picture(draw, sim, "front", again);
+    assert_memory_equal(first, again, BYTES);
+    assert_int_equal(ris_draw_resize(draw, 0, 5, &err), RIS_ERROR_USAGE);
+    assert_int_equal(ris_draw_resize(draw, 5, 100000, &err), RIS_ERROR_USAGE);
+    picture(draw, sim, "profile", again);
+    assert_memory_not_equal(first, again, BYTES);
+    ris_camera camera;
+    assert_false(ris_camera_named(scene, "back", &camera));
+    ris_sim_destroy(sim);
+    ris_draw_destroy(draw);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(golden_frames),
+        cmocka_unit_test(golden_controls),
+        cmocka_unit_test(in_place_equals_uploaded),
+        cmocka_unit_test(resize_and_repeat),
+    };
+    ris_error err = {0};
+    const ris_scene_def def = ris_default_scene_def();
+    device = test_gpu_open();
+    int failed = 1;
+    if (ris_model_load(RIS_SOURCE_DIR "/assets/human", &head, &err) != RIS_OK ||
+        ris_scene_model(&def, &scene, &err) != RIS_OK) {
+        fprintf(stderr, "%s\n", err.text);
+    } else {
+        failed = cmocka_run_group_tests(tests, NULL, NULL);
+    }
+    ris_model_destroy(head);
+    ris_model_destroy(scene);
+    ris_device_destroy(device);
+    return failed;
+}
