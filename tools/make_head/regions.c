@@ -40,7 +40,8 @@ static void add_rings(const maker *m, json_t *rule, uint8_t *has)
     for (uint32_t r = range[0]; r <= range[1] && r < set->count; r++)
         for (uint32_t k = 0; k < set->at[r].count; k++) {
             bool upper = k <= low || k >= high, lower = k >= low && k <= high;
-            if (!columns || (strcmp(columns, "upper") == 0 && upper) || (strcmp(columns, "lower") == 0 && lower))
+            if (!columns || (strcmp(columns, "upper") == 0 && upper) ||
+                (strcmp(columns, "lower") == 0 && lower))
                 mark(&m->skin, has, set->at[r].vertex[k]);
         }
 }

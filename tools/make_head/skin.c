@@ -129,7 +129,8 @@ static void build_normals(skin *s)
     s->normal = need(s->vertex_count, sizeof *s->normal);
     for (uint32_t f = 0; f < s->quad_count; f++) {
         const uint32_t *q = s->quad[f];
-        dvec n = v_cross(v_sub(s->position[q[2]], s->position[q[0]]), v_sub(s->position[q[3]], s->position[q[1]]));
+        dvec n =
+            v_cross(v_sub(s->position[q[2]], s->position[q[0]]), v_sub(s->position[q[3]], s->position[q[1]]));
         for (int k = 0; k < 4; k++)
             s->normal[q[k]] = v_add(s->normal[q[k]], n);
     }
@@ -214,7 +215,8 @@ dvec skin_project(const skin *s, double x, double y, dvec *normal)
 static void nearest_weights(dvec p, dvec a, dvec b, dvec c, double w[3])
 {
     dvec ab = v_sub(b, a), ac = v_sub(c, a), ap = v_sub(p, a);
-    double d00 = v_dot(ab, ab), d01 = v_dot(ab, ac), d11 = v_dot(ac, ac), d20 = v_dot(ap, ab), d21 = v_dot(ap, ac);
+    double d00 = v_dot(ab, ab), d01 = v_dot(ab, ac), d11 = v_dot(ac, ac), d20 = v_dot(ap, ab),
+           d21 = v_dot(ap, ac);
     double det = d00 * d11 - d01 * d01;
     w[1] = (d11 * d20 - d01 * d21) / det;
     w[2] = (d00 * d21 - d01 * d20) / det;

@@ -12,8 +12,9 @@
 #define AROUND 14
 
 typedef struct arch {
-    double half_width, front_z, back_z, power, edge_y, rise, crown_mm, fold_mm; /* fold: height of the outer gum */
-    double sign;                                                             /* +1: edges point down (upper) */
+    double half_width, front_z, back_z, power, edge_y, rise, crown_mm,
+        fold_mm;                  /* fold: height of the outer gum */
+    double sign;                  /* +1: edges point down (upper) */
     double length[ARC_STEPS + 1]; /* arc length from the middle to sample k */
     dvec at[ARC_STEPS + 1];       /* on the edge line, left half */
 } arch;
@@ -24,20 +25,24 @@ typedef struct crown {
     int cusps;
 } crown;
 
-static const crown upper_crowns[HALF] = {{8.6, 7.0, 1.00, 0}, {6.7, 6.2, 0.90, 0},  {7.7, 7.8, 0.98, 1},
-                                         {7.1, 8.8, 0.82, 2}, {6.8, 8.8, 0.78, 2},  {10.0, 10.6, 0.74, 4},
+static const crown upper_crowns[HALF] = {{8.6, 7.0, 1.00, 0},  {6.7, 6.2, 0.90, 0}, {7.7, 7.8, 0.98, 1},
+                                         {7.1, 8.8, 0.82, 2},  {6.8, 8.8, 0.78, 2}, {10.0, 10.6, 0.74, 4},
                                          {9.4, 10.4, 0.70, 4}, {8.4, 9.8, 0.64, 4}};
-static const crown lower_crowns[HALF] = {{5.3, 5.8, 0.88, 0}, {5.8, 6.2, 0.92, 0},  {6.9, 7.5, 1.02, 1},
-                                         {7.0, 7.7, 0.86, 2}, {7.1, 8.1, 0.80, 2},  {11.0, 10.1, 0.74, 4},
+static const crown lower_crowns[HALF] = {{5.3, 5.8, 0.88, 0},  {5.8, 6.2, 0.92, 0}, {6.9, 7.5, 1.02, 1},
+                                         {7.0, 7.7, 0.86, 2},  {7.1, 8.1, 0.80, 2}, {11.0, 10.1, 0.74, 4},
                                          {10.4, 9.9, 0.70, 4}, {9.6, 9.4, 0.64, 4}};
 
 static void build_arch(const maker *m, const char *key, arch *a)
 {
     json_t *rule = recipe_get(recipe_get(m->recipe, "teeth"), key);
-    *a = (arch){.half_width = recipe_number(rule, "half_width"), .front_z = recipe_number(rule, "front_z"),
-                .back_z = recipe_number(rule, "back_z"),         .power = recipe_number(rule, "power"),
-                .edge_y = recipe_number(rule, "edge_y"),         .rise = recipe_number(rule, "rise_mm"),
-                .crown_mm = recipe_number(rule, "crown_mm"),     .fold_mm = recipe_number(rule, "fold_mm"),
+    *a = (arch){.half_width = recipe_number(rule, "half_width"),
+                .front_z = recipe_number(rule, "front_z"),
+                .back_z = recipe_number(rule, "back_z"),
+                .power = recipe_number(rule, "power"),
+                .edge_y = recipe_number(rule, "edge_y"),
+                .rise = recipe_number(rule, "rise_mm"),
+                .crown_mm = recipe_number(rule, "crown_mm"),
+                .fold_mm = recipe_number(rule, "fold_mm"),
                 .sign = strcmp(key, "upper") == 0 ? 1 : -1};
     for (int k = 0; k <= ARC_STEPS; k++) {
         double angle = 0.5 * PI * k / ARC_STEPS, e = 2 / a->power;
@@ -73,7 +78,8 @@ static void section(const crown *c, double h, double *width, double *depth, doub
     if (c->cusps <= 1) { /* incisors and canines: wedge-shaped, lip side nearly flat */
         double thin = 1 - 0.80 * smoothstep(0.05, 1.0, h);
         *depth = 0.40 * c->depth * thin;
-        *lean = 0.40 * c->depth * (0.2 - thin) * 0.72 + 0.5 * sin(PI * clamp(h, 0, 1)) - 0.3 * (h - 1); /* 0 at the edge */
+        *lean = 0.40 * c->depth * (0.2 - thin) * 0.72 + 0.5 * sin(PI * clamp(h, 0, 1)) -
+                0.3 * (h - 1); /* 0 at the edge */
         if (c->cusps == 1)
             *width *= 1 - 0.42 * smoothstep(0.55, 1.0, h);
     } else {
@@ -106,11 +112,14 @@ static void add_tooth(part *p, const arch *a, const crown *c, double centre, dou
         uint32_t ring = p->vertex_count;
         for (uint32_t k = 0; k < AROUND; k++) {
             double angle = 2 * PI * k / AROUND, cx = cos(angle), cz = sin(angle);
-            double sx = copysign(pow(fabs(cx), 0.72), cx) * inset, sz = copysign(pow(fabs(cz), 0.80), cz) * inset;
-            double y = height * (1 - h) - (r < count ? 0.9 * smoothstep(0.85, 1.0, h) : 0.9) * cusp_height(c, sx, sz);
+            double sx = copysign(pow(fabs(cx), 0.72), cx) * inset,
+                   sz = copysign(pow(fabs(cz), 0.80), cz) * inset;
+            double y = height * (1 - h) -
+                       (r < count ? 0.9 * smoothstep(0.85, 1.0, h) : 0.9) * cusp_height(c, sx, sz);
             if (c->cusps == 1) /* the tip of the canine stands proud of its neighbours */
                 y -= 0.9 * smoothstep(0.7, 1.0, h) * (1 - fabs(sx)) - 0.5 * smoothstep(0.7, 1, h) * fabs(sx);
-            dvec at = v_mad(v_mad(v_mad(base, along, sx * width * round_off), out, sz * depth * round_off + lean), up, y);
+            dvec at = v_mad(
+                v_mad(v_mad(base, along, sx * width * round_off), out, sz * depth * round_off + lean), up, y);
             part_vertex(p, at, u0 + (u1 - u0) * (0.5 + 0.5 * sx), clamp(h, 0, 1));
         }
         for (uint32_t k = 0; k < AROUND && last != NONE; k++) {
@@ -174,15 +183,20 @@ static void gum_station(part *p, const arch *a, const crown *c, double s, double
     double margin = line - 0.6 - 2.6 * between, thin = 1 - 0.3 * between;
     double x = fabs(in_tooth - 0.5) / 0.378; /* the neck's section: |x|^2.78 + |z|^2.5 = 1 */
     double o = depth * (x < 1 ? 0.45 + 0.55 * pow(1 - pow(x, 2.78), 0.4) : 0.45), swell = 1 - 0.25 * between;
-    const double profile[GUM_POINTS][2] = {
-        {depth + 0.3, line + a->fold_mm}, {depth + 0.9, line + 0.68 * a->fold_mm},
-        {o + 1.1 * swell, line + 0.38 * a->fold_mm}, {o + 0.8 * swell, line + 0.16 * a->fold_mm},
-        {o * thin + 0.3, margin},
-        {0, margin - 0.1 + 0.5 * (1 - between)},
-        {-o * thin - 0.3, margin}, {-o - 0.9 * swell, line + 1.0}, {-depth - 1.5, line + 3.0}, {-depth - 2.1, line + 5.0},
-        {-depth - 2.4, line + 7.0}};
+    const double profile[GUM_POINTS][2] = {{depth + 0.3, line + a->fold_mm},
+                                           {depth + 0.9, line + 0.68 * a->fold_mm},
+                                           {o + 1.1 * swell, line + 0.38 * a->fold_mm},
+                                           {o + 0.8 * swell, line + 0.16 * a->fold_mm},
+                                           {o * thin + 0.3, margin},
+                                           {0, margin - 0.1 + 0.5 * (1 - between)},
+                                           {-o * thin - 0.3, margin},
+                                           {-o - 0.9 * swell, line + 1.0},
+                                           {-depth - 1.5, line + 3.0},
+                                           {-depth - 2.1, line + 5.0},
+                                           {-depth - 2.4, line + 7.0}};
     for (int k = 0; k < GUM_POINTS; k++)
-        part_vertex(p, v_mad(v_mad(base, out, profile[k][0] + lean), up, profile[k][1]), u, k / (GUM_POINTS - 1.0));
+        part_vertex(p, v_mad(v_mad(base, out, profile[k][0] + lean), up, profile[k][1]), u,
+                    k / (GUM_POINTS - 1.0));
 }
 
 static part build_gum(const arch *a, const crown *crowns)
@@ -208,7 +222,8 @@ static part build_gum(const arch *a, const crown *crowns)
             c.height += share * (crowns[other].height - c.height);
         }
         c.cusps = k < 3 ? 0 : 2;
-        gum_station(&p, a, &c, from_middle < 0 ? -s : s, in_tooth, 0.5 + 0.5 * (from_middle < 0 ? -s : s) / total);
+        gum_station(&p, a, &c, from_middle < 0 ? -s : s, in_tooth,
+                    0.5 + 0.5 * (from_middle < 0 ? -s : s) / total);
     }
     for (uint32_t i = 0; i + 1 < stations; i++)
         for (uint32_t k = 0; k + 1 < GUM_POINTS; k++) {

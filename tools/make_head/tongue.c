@@ -51,13 +51,16 @@ static void fit(const maker *m, dvec *position, uint32_t count)
     recipe_numbers(rule, "move", move, 3);
     for (uint32_t i = 0; i < count; i++) {
         dvec p = position[i];
-        position[i] = v3(about[0] + (p.x - about[0]) * scale[0] + move[0], about[1] + (p.y - about[1]) * scale[1] + move[1],
+        position[i] = v3(about[0] + (p.x - about[0]) * scale[0] + move[0],
+                         about[1] + (p.y - about[1]) * scale[1] + move[1],
                          about[2] + (p.z - about[2]) * scale[2] + move[2]);
     }
 }
 
 static void uv_from_above(part *p)
 {
+    if (!p->vertex_count || !p->position)
+        stop("the mesh has no tongue");
     dvec low = p->position[0], high = p->position[0];
     for (uint32_t i = 0; i < p->vertex_count; i++) {
         dvec v = p->position[i];
@@ -87,7 +90,8 @@ static part divide(const dvec *position, uint32_t vertices, uint32_t (*face)[4],
             uint32_t v = face[f][k];
             dvec middle = v_mix(position[v], position[face[f][(k + 1) % 4]], 0.5);
             dvec before = v_mix(position[v], position[face[f][(k + 3) % 4]], 0.5);
-            sum[v] = v_add(sum[v], v_add(centre[f], v_add(middle, before))); /* each edge counts twice: Q + 2 R */
+            sum[v] =
+                v_add(sum[v], v_add(centre[f], v_add(middle, before))); /* each edge counts twice: Q + 2 R */
             valence[v]++;
         }
     for (uint32_t v = 0; v < vertices; v++) {
