@@ -23,7 +23,7 @@ static ris_vec3 at_size(ris_vec3 p, float size_mm)
 /* Base tone by region of the face: yellow forehead, red centre, grey lower third. */
 static void tone(const ris_paint_zones *z, pigment *ink)
 {
-    ink->melanin = 0.47f + 0.05f * z->forehead + 0.03f * z->lower_face + 0.04f * z->neck;
+    ink->melanin = 0.52f + 0.05f * z->forehead + 0.03f * z->lower_face + 0.04f * z->neck;
     ink->blood = 0.34f - 0.05f * z->forehead - 0.04f * z->neck + 0.02f * z->scalp;
     ink->blood += 0.19f * z->nose + 0.15f * z->ala + 0.17f * z->cheek + 0.22f * z->ear + 0.08f * z->chin;
     ink->blood +=
@@ -48,8 +48,8 @@ static void mottle(const ris_paint_zones *z, ris_vec3 p, float s, pigment *ink)
     const float central = fminf(1, z->cheek + z->nose + z->ala + 0.5f * z->chin);
     const float even = 1 - 0.65f * z->scalp; /* hair hides the mottling */
     ink->blood +=
-        even * ((0.09f + 0.04f * central) * flush + (0.10f + 0.06f * central) * patch) + 0.035f * speck;
-    ink->melanin += even * (0.11f * brown + 0.04f * speck);
+        even * ((0.12f + 0.05f * central) * flush + (0.14f + 0.07f * central) * patch + 0.08f * speck);
+    ink->melanin += even * (0.15f * brown + 0.05f * speck);
     const float vessel = 1 - fabsf(ris_paint_fbm(at_size(p, 4 * s), 2, 47)) * 7;
     ink->blood += 0.10f * fmaxf(0, vessel) * (0.25f * z->cheek + 0.8f * z->ala);
     const ris_paint_cell freckle = ris_paint_cells(at_size(p, 4.2f * s), 53);
@@ -58,7 +58,7 @@ static void mottle(const ris_paint_zones *z, ris_vec3 p, float s, pigment *ink)
     const float sunny = 0.10f + 0.34f * fminf(1, z->cheek + z->nose) + 0.10f * z->forehead;
     if (rare < sunny && z->lip < 0.1f)
         ink->melanin +=
-            0.22f * ris_paint_step(size, 0.3f * size, freckle.near) * (0.4f + 0.6f * (1 - rare / sunny));
+            0.42f * ris_paint_step(size, 0.3f * size, freckle.near) * (0.4f + 0.6f * (1 - rare / sunny));
     const ris_paint_cell mole = ris_paint_cells(at_size(p, 34 * s), 59);
     const float radius = 0.018f + 0.016f * (float)(mole.id >> 8 & 255u) / 255.0f;
     if ((mole.id & 255u) < 70 && z->lip < 0.1f)
@@ -76,9 +76,9 @@ static void lips(const ris_paint_zones *z, ris_vec3 p, float s, pigment *ink)
     ink->cold = ris_paint_mix(ink->cold, 0.08f, z->lip);
     ink->shade += z->lip * (0.12f + 0.06f * lines) + 0.05f * z->lip_corner;
     const float deep = z->inner_mouth;
-    ink->blood = ris_paint_mix(ink->blood, 1.25f + 0.15f * patch, deep);
+    ink->blood = ris_paint_mix(ink->blood, 1.05f + 0.15f * patch, deep);
     ink->melanin = ris_paint_mix(ink->melanin, 0.25f, deep);
-    ink->shade = ris_paint_mix(ink->shade, 0.25f, deep);
+    ink->shade = ris_paint_mix(ink->shade, 0.04f, deep);
 }
 
 /* Cut hairs in the scalp: a dot per follicle where the density allows, and their grey shine through the
@@ -95,8 +95,8 @@ static void stubble(const ris_paint_zones *z, ris_vec3 p, float brow, pigment *i
     ink->cold += 0.38f * density;
     ink->melanin += 0.04f * density;
     ink->blood -= 0.06f * density;
-    ink->shade += 0.80f * brow;
-    ink->melanin += 0.28f * brow;
+    ink->shade += 0.55f * brow;
+    ink->melanin += 0.40f * brow;
 }
 
 /* Fine relief, 0 = mean: pores, the criss-cross of thin skin, lines of forehead and lips, stubble. mm-ish,
