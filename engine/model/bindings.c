@@ -20,6 +20,7 @@ typedef struct touch {
     uint32_t fiber, segment;
     ris_vec3 local; /* y = +-0.5: the muscle surface on the node's side */
     float distance; /* to the sheet, mm */
+    float depth;    /* of the sheet below the skin there, mm */
     float facing;   /* n_s . n_d */
     float above;    /* n_s . up of the segment */
     float along;    /* arc-length parameter along the fibre */
@@ -35,9 +36,11 @@ typedef struct binder {
     size_t binding_room, attach_room;
 } binder;
 
-static touch meet_segment(const binder *b, uint32_t fiber, uint32_t row, uint32_t node)
+static touch meet_segment(const binder *b, uint32_t m, uint32_t fiber, uint32_t row, uint32_t node)
 {
     const ris_model *model = b->bake->model;
+    const uint32_t columns = model->muscle[m].def->columns;
+    const float *depth = b->bake->grid_depth + b->bake->grid_first[m] + row * columns + (fiber - model->muscle[m].first_fiber);
     const uint32_t point = model->fiber[fiber].first_point + row;
     touch t = {.fiber = fiber, .segment = model->fiber[fiber].first_segment + row};
     const ris_segment *segment = &model->segment[t.segment];
@@ -50,6 +53,8 @@ static touch meet_segment(const binder *b, uint32_t fiber, uint32_t row, uint32_
     const ris_vec3 d = v3_sub(x, on_sheet);
     t.distance = v3_length(d);
     t.facing = v3_dot(v3_unit_or(d, segment->up), v4_xyz(model->rest_normal[node]));
+    const float near_depth = 0.5f * (depth[0] + depth[1]), far_depth = 0.5f * (depth[columns] + depth[columns + 1]);
+    t.depth = near_depth + (t.local.x + 0.5f) * (far_depth - near_depth);
     t.above = v3_dot(segment->up, v4_xyz(model->rest_normal[node]));
     t.along = b->arc[point] + (t.local.x + 0.5f) * (b->arc[point + 1] - b->arc[point]);
     return t;
@@ -136,15 +141,14 @@ static ris_result bind_blended(binder *b, uint32_t m, uint32_t node, ris_error *
 {
     const ris_model *model = b->bake->model;
     const ris_muscle *muscle = &model->muscle[m];
-    const float depth = b->bake->head->tissue.skin_mm + (muscle->def->thickness_mm[0] + muscle->def->thickness_mm[1]) / 4.0f;
     touch list[MAX_BLEND] = {0};
     uint32_t count = 0;
     for (uint32_t f = 0; f < muscle->fiber_count; ++f) {
         for (uint32_t r = 0; r + 1 < muscle->point_count; ++r) {
-            keep_nearest(list, &count, meet_segment(b, muscle->first_fiber + f, r, node));
+            keep_nearest(list, &count, meet_segment(b, m, muscle->first_fiber + f, r, node));
         }
     }
-    const float beyond = f_max(list[0].distance - depth, 0.0f);
+    const float beyond = f_max(list[0].distance - list[0].depth, 0.0f);
     if (!(beyond < muscle->radius_mm)) {
         return RIS_OK;
     }
@@ -192,7 +196,7 @@ static ris_result bind_nearest(binder *b, uint32_t node, ris_error *err)
         }
         for (uint32_t f = 0; f < muscle->fiber_count; ++f) {
             for (uint32_t r = 0; r + 1 < muscle->point_count; ++r) {
-                touch t = meet_segment(b, muscle->first_fiber + f, r, node);
+                touch t = meet_segment(b, m, muscle->first_fiber + f, r, node);
                 if (t.facing > 0.0f && t.distance <= radius && t.distance / t.facing < best) {
                     best = t.distance / t.facing;
                     best_muscle = m;

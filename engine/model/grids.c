@@ -1,5 +1,6 @@
 /* KA-38 grid initialisation (without refinement, KA-39): a muscle's grid is projected on the skin and sunk to the middle of the
- * muscle layer, skin_mm + (min + max) / 4 below it. */
+ * muscle layer, skin_mm + (min + max) / 4 below it. A grid point that lies deeper than that keeps its place, as the control points
+ * of KA-39 do: real muscles dive below fat on their way to the bone. */
 #include "model_impl.h"
 #include "vec3.h"
 
@@ -140,7 +141,9 @@ static ris_result sink_grid(ris_bake *bake, uint32_t m, ris_error *err)
             return ris_fail(err, RIS_ERROR_DATA, "muscle %s: grid row %u, column %u has no skin within %g mm that faces it", def->name,
                             k / def->columns, k % def->columns, (double)FARTHEST_MM);
         }
-        point[k] = v3_mad(on_skin, -depth, normal[k]);
+        const float own = v3_dot(v3_sub(on_skin, def->grid[k]), normal[k]);
+        point[k] = own > depth ? def->grid[k] : v3_mad(on_skin, -depth, normal[k]);
+        bake->grid_depth[bake->grid_first[m] + k] = f_max(own, depth);
     }
     return RIS_OK;
 }
@@ -162,6 +165,9 @@ ris_result ris__bake_grids(ris_bake *bake, ris_error *err)
     }
     if (result == RIS_OK) {
         result = ris__model_alloc(&bake->grid_normal, total, sizeof *bake->grid_normal, "muscle grids", err);
+    }
+    if (result == RIS_OK) {
+        result = ris__model_alloc(&bake->grid_depth, total, sizeof *bake->grid_depth, "muscle grids", err);
     }
     for (uint32_t m = 0; result == RIS_OK && m < head->muscle_count; ++m) {
         result = sink_grid(bake, m, err);

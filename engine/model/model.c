@@ -32,6 +32,7 @@ static void bake_finish(ris_bake *bake)
     free(bake->muscle_weight);
     free(bake->grid_point);
     free(bake->grid_normal);
+    free(bake->grid_depth);
     free(bake->grid_first);
 }
 

@@ -15,6 +15,7 @@ typedef struct ris_bake {
     float *muscle_weight; /* largest binding weight, 0..1 (node_count) */
     ris_vec3 *grid_point; /* grids projected and sunk below the skin (sum of rows x columns) */
     ris_vec3 *grid_normal;
+    float *grid_depth; /* below the skin, mm */
     uint32_t *grid_first; /* first grid point of each muscle (muscle_count + 1) */
 } ris_bake;
 
