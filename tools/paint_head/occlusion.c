@@ -180,8 +180,8 @@ static ris_vec3 spiral(ris_vec3 normal, uint32_t i, uint32_t n, float power)
 {
     const float square = ((float)i + 0.5f) / (float)n * power, turn = 2.3999632f * (float)i;
     const float radius = sqrtf(square), height = sqrtf(1 - square);
-    const ris_vec3 helper = fabsf(normal.x) < 0.6f ? vec3(1, 0, 0) : vec3(0, 1, 0);
-    const ris_vec3 u = ris_paint_unit(vec3_cross(helper, normal)), v = vec3_cross(normal, u);
+    const ris_vec3 aside = fabsf(normal.x) < 0.6f ? vec3(1, 0, 0) : vec3(0, 1, 0);
+    const ris_vec3 u = ris_paint_unit(vec3_cross(aside, normal)), v = vec3_cross(normal, u);
     return vec3_add(vec3_scale(normal, height),
                     vec3_add(vec3_scale(u, radius * cosf(turn)), vec3_scale(v, radius * sinf(turn))));
 }
