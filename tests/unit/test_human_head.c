@@ -313,6 +313,56 @@ static void test_mouth_parts_placed(void **state)
     assert_int_equal(part("teeth_upper")->bone, RIS_BONE_SKULL);
 }
 
+/* Six times the volume: positive when all faces look outwards. */
+static double volume6(const ris_mesh *m)
+{
+    double sum = 0;
+    for (uint32_t f = 0; f < m->face_count; f++) {
+        uint32_t first = m->face_start[f];
+        for (uint32_t k = first + 1; k + 1 < m->face_start[f + 1]; k++) {
+            ris_vec3 a = m->position[m->face_vertex[first]];
+            sum += dot(a, cross(m->position[m->face_vertex[k]], m->position[m->face_vertex[k + 1]]));
+        }
+    }
+    return sum;
+}
+
+static uint32_t open_edges(const ris_mesh *m)
+{
+    uint32_t *used = calloc((size_t)m->vertex_count * 64, sizeof *used),
+             open = 0; /* vertices reached from each */
+    assert_non_null(used);
+    for (uint32_t f = 0; f < m->face_count; f++)
+        for (uint32_t k = m->face_start[f]; k < m->face_start[f + 1]; k++) {
+            uint32_t next = k + 1 < m->face_start[f + 1] ? k + 1 : m->face_start[f];
+            uint32_t *row = &used[(size_t)m->face_vertex[k] * 64];
+            assert_true(row[0] < 63);
+            row[++row[0]] = m->face_vertex[next];
+        }
+    for (uint32_t v = 0; v < m->vertex_count; v++)
+        for (uint32_t k = 1; k <= used[(size_t)v * 64]; k++) {
+            const uint32_t *row = &used[(size_t)used[(size_t)v * 64 + k] * 64];
+            bool back = false;
+            for (uint32_t j = 1; j <= row[0]; j++)
+                back |= row[j] == v;
+            open += !back;
+        }
+    free(used);
+    return open;
+}
+
+/* Teeth, gums and tongue are closed solids that look outwards; an eyeball is open at its back (negative control). */
+static void test_mouth_parts_solid(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"teeth_upper", "teeth_lower", "gum_upper", "gum_lower", "tongue"};
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+        assert_int_equal(open_edges(&part(names[k])->mesh), 0);
+        assert_true(volume6(&part(names[k])->mesh) > 6 * 1000);
+    }
+    assert_int_not_equal(open_edges(&part("eye.L")->mesh), 0);
+}
+
 static float distance(ris_vec3 a, ris_vec3 b)
 {
     return sqrtf(dot(minus(a, b), minus(a, b)));
@@ -444,6 +494,7 @@ int main(void)
         cmocka_unit_test(test_fields),
         cmocka_unit_test(test_mouth_parts_inside),
         cmocka_unit_test(test_mouth_parts_placed),
+        cmocka_unit_test(test_mouth_parts_solid),
         cmocka_unit_test(test_eyes),
         cmocka_unit_test(test_eyes_behind_lids),
         cmocka_unit_test(test_parts_mirror),

@@ -97,13 +97,21 @@ static double cusp_height(const crown *c, double x, double z)
     return 0;
 }
 
-/* Rings from below the gum to the edge, then the chewing surface closing on a middle vertex. */
+static void close_fan(part *p, uint32_t middle, uint32_t ring, bool turned)
+{
+    for (uint32_t k = 0; k < AROUND; k++) {
+        uint32_t n = (k + 1) % AROUND;
+        part_triangle(p, middle, ring + (turned ? k : n), ring + (turned ? n : k));
+    }
+}
+
+/* Rings from below the gum to the edge, then the chewing surface; closed at both ends. */
 static void add_tooth(part *p, const arch *a, const crown *c, double centre, double u0, double u1)
 {
     dvec along, out, base = arch_at(a, centre, &along, &out), up = v3(0, a->sign, 0);
     double height = a->crown_mm * c->height;
     static const double levels[] = {-0.22, 0.0, 0.16, 0.36, 0.58, 0.78, 0.90, 0.97, 1.0};
-    uint32_t last = NONE, count = sizeof levels / sizeof *levels;
+    uint32_t first = p->vertex_count, last = NONE, count = sizeof levels / sizeof *levels;
     for (uint32_t r = 0; r < count + 2; r++) {
         double h = levels[r < count ? r : count - 1], inset = r < count ? 1 : r == count ? 0.62 : 0.30;
         double width, depth, lean;
@@ -124,7 +132,7 @@ static void add_tooth(part *p, const arch *a, const crown *c, double centre, dou
         }
         for (uint32_t k = 0; k < AROUND && last != NONE; k++) {
             uint32_t n = (k + 1) % AROUND;
-            if (a->sign < 0)
+            if (a->sign > 0)
                 part_quad(p, last + k, last + n, ring + n, ring + k);
             else
                 part_quad(p, last + n, last + k, ring + k, ring + n);
@@ -132,16 +140,14 @@ static void add_tooth(part *p, const arch *a, const crown *c, double centre, dou
         last = ring;
     }
     double width, depth, lean;
+    section(c, levels[0], &width, &depth, &lean);
+    uint32_t root =
+        part_vertex(p, v_mad(v_mad(base, out, lean), up, height * (1.1 - levels[0])), (u0 + u1) / 2, 0);
+    close_fan(p, root, first, a->sign < 0);
     section(c, 1, &width, &depth, &lean);
     double y = -0.9 * cusp_height(c, 0, 0) - (c->cusps == 1 ? 0.9 : 0);
     uint32_t tip = part_vertex(p, v_mad(v_mad(base, out, lean), up, y), (u0 + u1) / 2, 1);
-    for (uint32_t k = 0; k < AROUND; k++) {
-        uint32_t n = (k + 1) % AROUND;
-        if (a->sign < 0)
-            part_triangle(p, tip, last + k, last + n);
-        else
-            part_triangle(p, tip, last + n, last + k);
-    }
+    close_fan(p, tip, last, a->sign > 0);
 }
 
 static double arch_scale(const arch *a, const crown *crowns)
@@ -199,6 +205,21 @@ static void gum_station(part *p, const arch *a, const crown *c, double s, double
                     k / (GUM_POINTS - 1.0));
 }
 
+/* A strip of quads over the end section: outer points to their partners inside. */
+static void close_gum_end(part *p, uint32_t first, bool turned)
+{
+    for (uint32_t k = 0; k < GUM_POINTS / 2; k++) {
+        uint32_t a = first + k, b = first + k + 1, c = first + GUM_POINTS - 2 - k,
+                 d = first + GUM_POINTS - 1 - k;
+        if (b == c)
+            part_triangle(p, a, turned ? b : d, turned ? d : b);
+        else if (turned)
+            part_quad(p, a, b, c, d);
+        else
+            part_quad(p, a, d, c, b);
+    }
+}
+
 static part build_gum(const arch *a, const crown *crowns)
 {
     part p = {0};
@@ -225,14 +246,16 @@ static part build_gum(const arch *a, const crown *crowns)
         gum_station(&p, a, &c, from_middle < 0 ? -s : s, in_tooth,
                     0.5 + 0.5 * (from_middle < 0 ? -s : s) / total);
     }
-    for (uint32_t i = 0; i + 1 < stations; i++)
-        for (uint32_t k = 0; k + 1 < GUM_POINTS; k++) {
-            uint32_t v = i * GUM_POINTS + k, w = v + GUM_POINTS;
+    for (uint32_t i = 0; i + 1 < stations; i++) /* the last strip closes the band underneath */
+        for (uint32_t k = 0; k < GUM_POINTS; k++) {
+            uint32_t v = i * GUM_POINTS + k, n = i * GUM_POINTS + (k + 1) % GUM_POINTS;
             if (a->sign < 0)
-                part_quad(&p, v, w, w + 1, v + 1);
+                part_quad(&p, v, v + GUM_POINTS, n + GUM_POINTS, n);
             else
-                part_quad(&p, v, v + 1, w + 1, w);
+                part_quad(&p, v, n, n + GUM_POINTS, v + GUM_POINTS);
         }
+    close_gum_end(&p, 0, a->sign < 0);
+    close_gum_end(&p, (stations - 1) * GUM_POINTS, a->sign > 0);
     return p;
 }
 
