@@ -145,7 +145,7 @@ void ris__draw_view_fill(const ris_draw *draw, const ris_camera *camera, const f
     out->radiance[0] = (ris_vec4){1.46f, 1.36f, 1.24f, 0.0f};
     out->radiance[1] = (ris_vec4){0.36f, 0.40f, 0.46f, 0.0f};
     out->radiance[2] = (ris_vec4){0.85f, 0.90f, 1.00f, 0.0f};
-    out->sky = (ris_vec4){0.40f, 0.42f, 0.45f, 0.0f};
+    out->sky = (ris_vec4){0.35f, 0.37f, 0.40f, 0.0f};
     out->ground = (ris_vec4){0.17f, 0.15f, 0.14f, 0.0f};
     light_rows((ris_vec3){out->light[0].x, out->light[0].y, out->light[0].z}, centre, radius, out->shadow);
     out->mouth = scene->mouth;

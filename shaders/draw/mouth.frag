@@ -13,19 +13,19 @@ layout(location = 0) out vec4 out_color;
 
 void main()
 {
-    vec3 n = normalize(in_normal), v = normalize(view.eye.xyz - in_world);
+    vec3 n = normalize(gl_FrontFacing ? in_normal : -in_normal), v = normalize(view.eye.xyz - in_world);
     vec3 albedo = base_color(in_uv);
     float depth = max(0.0, view.mouth.x - in_rest.z) / view.mouth.y;
     float gap = distance(at[view.lip[0]].xyz, at[view.lip[1]].xyz);
-    float parted = view.lip[0] == view.lip[1] ? 1.0 : clamp(0.06 + (gap - 1.0) / 14.0, 0.06, 1.0);
-    float open = (exp(-1.5 * depth) + 0.03) * parted;
+    float parted = view.lip[0] == view.lip[1] ? 1.0 : clamp(0.07 + (gap - 0.7) / 2.2, 0.07, 1.0);
+    float open = (exp(-1.05 * depth) + 0.03) * parted;
     vec3 diffuse = vec3(0.0), shine = vec3(0.0);
     for (int k = 0; k < 2; k++) {
         vec3 l = view.light[k].xyz;
-        float shadow = k == 0 ? mix(0.35, 1.0, key_shadow(in_world, n)) : 0.9;
+        float shadow = k == 0 ? mix(0.5, 1.0, key_shadow(in_world, n)) : 0.9;
         diffuse += view.radiance[k].rgb * wrapped(vec3(dot(n, l)), vec3(0.35, 0.25, 0.22)) * shadow;
         shine += view.radiance[k].rgb * specular(n, v, l, 0.24, 0.04) * shadow;
     }
     diffuse += ambient(n);
-    out_color = vec4(tone(albedo * diffuse * pow(vec3(open), vec3(0.85, 1.05, 1.05)) + shine * open * 0.8), 1.0);
+    out_color = vec4(tone(albedo * diffuse * (open * vec3(1.0, 0.95, 0.88) + (1.0 - open) * parted * vec3(0.09, 0.03, 0.025)) + shine * open * 0.8), 1.0);
 }

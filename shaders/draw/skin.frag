@@ -30,9 +30,9 @@ void main()
     float thin = detail.b;
     float gloss = ao * ao;
 
-    vec3 spread = vec3(0.38, 0.14, 0.08) + thin * vec3(0.45, 0.12, 0.06);
+    vec3 spread = vec3(0.32, 0.12, 0.07) + thin * vec3(0.45, 0.12, 0.06);
     // creases keep some red: light scatters in from their walls
-    vec3 open = ao * (vec3(1.35, 0.95, 0.85) - ao * vec3(0.35, -0.05, -0.15));
+    vec3 open = ao * (vec3(1.35, 0.95, 0.85) - ao * vec3(0.35, -0.05, -0.15)) + (1.0 - ao) * vec3(0.15, 0.05, 0.045);
     float lit = key_shadow(in_world, smooth_n);
     vec3 diffuse = ambient(soft) * open, shine = vec3(0.0);
     for (int k = 0; k < 3; k++) {
