@@ -14,7 +14,7 @@ void main()
 {
     vec3 n = normalize(in_normal), v = normalize(view.eye.xyz - in_world);
     float ndv = clamp(dot(n, v), 0.0, 1.0);
-    float fresnel = 0.03 + 0.97 * fifth(1.0 - ndv);
+    float fresnel = min(0.03 + 0.97 * fifth(1.0 - ndv), 0.25);
     float ao = clamp(in_rest.w, 0.0, 1.0);
     vec3 mirror = studio(reflect(-v, n)) * (1.6 * fresnel) * mix(0.2, 1.0, smoothstep(0.15, 0.5, ao));
     float shadow = mix(0.4, 1.0, key_shadow(in_world, n));

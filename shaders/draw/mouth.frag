@@ -27,5 +27,5 @@ void main()
         shine += view.radiance[k].rgb * specular(n, v, l, 0.24, 0.04) * shadow;
     }
     diffuse += ambient(n);
-    out_color = vec4(tone(albedo * diffuse * (open * vec3(1.0, 0.95, 0.88) + (1.0 - open) * parted * vec3(0.09, 0.03, 0.025)) + shine * open * 0.8), 1.0);
+    out_color = vec4(tone(albedo * diffuse * (open * mix(vec3(1.0, 0.70, 0.60), vec3(1.0, 0.95, 0.88), exp(-2.0 * depth)) + (1.0 - open) * parted * vec3(0.09, 0.03, 0.025)) + shine * open * 0.8), 1.0);
 }

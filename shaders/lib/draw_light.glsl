@@ -7,7 +7,7 @@ layout(binding = RIS_DRAW_BIND_SHADOW) uniform sampler2D shadow_texture;
 float key_shadow(vec3 world, vec3 normal)
 {
     float slope = 1.0 - clamp(dot(normal, view.light[0].xyz), 0.0, 1.0);
-    vec3 lifted = world + normal * (0.6 + 1.6 * slope);
+    vec3 lifted = world + normal * (0.9 + 2.6 * slope);
     vec4 p = rows(view.shadow[0], view.shadow[1], view.shadow[2], view.shadow[3], vec4(lifted, 1.0));
     vec2 uv = p.xy * 0.5 + 0.5;
     if (any(lessThan(uv, vec2(0.01))) || any(greaterThan(uv, vec2(0.99)))) {
