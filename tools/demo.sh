@@ -24,7 +24,7 @@ clip=$root/assets/clips/first_light.json
 
 echo "demo: simulating and rendering"
 rm -rf -- "$out/frames"
-"$risorius" render "$head" --clip "$clip" --view front,34 --size 480x540 --fps 60 \
+"$risorius" render "$head" --clip "$clip" --view front,34 --size 480x540 --fps 30 \
   -o "$out/first_light.mp4" -o "$out/frames/%04d.png" --contact "$out/contact.png"
 
 echo "demo: GPU against CPU"

@@ -153,7 +153,9 @@ static void a_hand_may_do_what_it_likes(void **state)
     XCloseDisplay(display);
     if (!alive || !WIFEXITED(status) || WEXITSTATUS(status) != 0) {
         char *log = command_read_file(path);
-        fail_msg("the viewer did not end well: window %d, alive %d, status %d: %s", window != 0, alive, status, log ? log : "");
+        print_error("%s\n", log ? log : "");
+        free(log);
+        fail_msg("the viewer did not end well: window %d, alive %d, status %d", window != 0, alive, status);
     }
 }
 
