@@ -7,9 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* faces: corner counts, then the corners in one row. All vertices move unless pinned says otherwise. Release with ris_head_finish. */
-static inline ris_head mesh_head(uint32_t vertex_count, const ris_vec3 *position, uint32_t face_count, const uint32_t *corners,
-                                 const uint32_t *vertex, const bool *pinned)
+/* faces: corner counts, then the corners in one row. All vertices move unless pinned says otherwise.
+ * Release with ris_head_finish. */
+static inline ris_head mesh_head(uint32_t vertex_count, const ris_vec3 *position, uint32_t face_count,
+                                 const uint32_t *corners, const uint32_t *vertex, const bool *pinned)
 {
     ris_head head = {.tissue = ris_default_tissue()};
     uint32_t total = 0;
@@ -54,7 +55,8 @@ static inline ris_muscle_def *add_muscles(ris_head *head, uint32_t count)
     return head->muscle;
 }
 
-static inline void set_muscle(ris_muscle_def *def, const char *name, uint32_t rows, uint32_t columns, const ris_vec3 *grid)
+static inline void set_muscle(ris_muscle_def *def, const char *name, uint32_t rows, uint32_t columns,
+                              const ris_vec3 *grid)
 {
     snprintf(def->name, sizeof def->name, "%s", name);
     def->kind = RIS_MUSCLE_LINEAR;

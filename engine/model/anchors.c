@@ -1,5 +1,5 @@
-/* KA-14, KA-15 and the anchors of the default tissue (spec/prototype.md 5): one anchor on every moving node, its stiffness by
- * region, smoothed over region borders and in proportion to the node's area. */
+/* KA-14, KA-15 and the anchors of the default tissue (spec/prototype.md 5): one anchor on every moving
+ * node, its stiffness by region, smoothed over region borders and in proportion to the node's area. */
 #include "model_impl.h"
 #include "vec3.h"
 
@@ -10,7 +10,8 @@
 #define SMOOTHING_PASSES 2
 
 /* Sets (or, for "muscle", blends in) the stiffness of one record. */
-static ris_result apply_region(const ris_bake *bake, const ris_anchor_region *record, float *normal, float *tangential, ris_error *err)
+static ris_result apply_region(const ris_bake *bake, const ris_anchor_region *record, float *normal,
+                               float *tangential, ris_error *err)
 {
     const uint32_t n = bake->model->node_count;
     if (strcmp(record->region, "bone") == 0) {
@@ -57,7 +58,8 @@ static void smooth(const ris_model *model, float *value, float *scratch)
     }
 }
 
-static ris_result fill_default(ris_bake *bake, float *normal, float *tangential, float *scratch, ris_error *err)
+static ris_result fill_default(ris_bake *bake, float *normal, float *tangential, float *scratch,
+                               ris_error *err)
 {
     ris_model *model = bake->model;
     const ris_tissue_def *tissue = &bake->head->tissue;
@@ -73,13 +75,15 @@ static ris_result fill_default(ris_bake *bake, float *normal, float *tangential,
         if (!bake->moving[i]) {
             continue;
         }
-        const float scale = f_clamp(model->node_area_mm2[i] / AREA_UNIT_MM2, 0.05f, 4.0f) * tissue->stiffness_scale;
+        const float scale =
+            f_clamp(model->node_area_mm2[i] / AREA_UNIT_MM2, 0.05f, 4.0f) * tissue->stiffness_scale;
         ris_anchor_param *param = &model->anchor_param[i];
         param->normal = normal[i] * scale;
         param->tangential = tangential[i] * scale;
         param->bend = tissue->bending * tissue->stiffness_scale;
         if (!(param->normal >= 0.0f) || !(param->tangential >= 0.0f)) {
-            return ris_fail(err, RIS_ERROR_DATA, "anchor stiffness of vertex %u is %g, %g, expected 0 or more", i,
+            return ris_fail(err, RIS_ERROR_DATA,
+                            "anchor stiffness of vertex %u is %g, %g, expected 0 or more", i,
                             (double)param->normal, (double)param->tangential);
         }
     }
@@ -96,12 +100,15 @@ static ris_result fill_kaehler(ris_bake *bake, ris_error *err)
             continue;
         }
         const bool on_muscle = model->binding_start[i + 1] > model->binding_start[i];
-        const ris_vec3 a = on_muscle ? model->attach[model->binding[model->binding_start[i]].first_attach].rest : model->bone_anchor[i];
+        const ris_vec3 a = on_muscle
+                               ? model->attach[model->binding[model->binding_start[i]].first_attach].rest
+                               : model->bone_anchor[i];
         ris_anchor_param *param = &model->anchor_param[i];
         param->normal = on_muscle ? tissue->muscle_anchor : tissue->bone_anchor;
         param->rest_mm = v3_length(v3_sub(a, v4_xyz(model->rest_position[i])));
         if (!(param->rest_mm > 0.0f)) {
-            return ris_fail(err, RIS_ERROR_DATA, "vertex %u has neither a muscle nor a depth to the bone: nothing holds it", i);
+            return ris_fail(err, RIS_ERROR_DATA,
+                            "vertex %u has neither a muscle nor a depth to the bone: nothing holds it", i);
         }
     }
     return RIS_OK;
@@ -123,10 +130,12 @@ ris_result ris__bake_anchors(ris_bake *bake, ris_error *err)
         return result;
     }
     for (uint32_t i = 0; i < n; ++i) {
-        model->bone_anchor[i] = v3_mad(v4_xyz(model->rest_position[i]), -bake->head->depth_mm[i], v4_xyz(model->rest_normal[i]));
+        model->bone_anchor[i] =
+            v3_mad(v4_xyz(model->rest_position[i]), -bake->head->depth_mm[i], v4_xyz(model->rest_normal[i]));
     }
-    result = bake->head->tissue.model == RIS_TISSUE_KAEHLER ? fill_kaehler(bake, err)
-                                                           : fill_default(bake, values, values + n, values + 2 * (size_t)n, err);
+    result = bake->head->tissue.model == RIS_TISSUE_KAEHLER
+                 ? fill_kaehler(bake, err)
+                 : fill_default(bake, values, values + n, values + 2 * (size_t)n, err);
     free(values);
     return result;
 }

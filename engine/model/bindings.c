@@ -1,17 +1,18 @@
-/* KA-42 muscle to skin. Default tissue (spec/prototype.md 5): every moving node within radius_mm of the muscle, blended over the
- * near segments, with an insertion profile along the fibre. kaehler tissue: the one nearest attachment, distances divided by
- * n_s . n_d. A node is never bound through the skin (n_s . n_d <= 0), nor to a muscle of the other lip. */
+/* KA-42 muscle to skin. Default tissue (spec/prototype.md 5): every moving node within radius_mm of the
+ * muscle, blended over the near segments, with an insertion profile along the fibre. kaehler tissue: the
+ * one nearest attachment, distances divided by n_s . n_d. A node is never bound through the skin (n_s .
+ * n_d <= 0), nor to a muscle of the other lip. */
 #include "model_impl.h"
 #include "vec3.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#define MAX_BLEND 8       /* segments blended into one binding */
-#define BLEND_RATIO 1.6f  /* segments up to BLEND_RATIO x nearest + BLEND_MM take part */
+#define MAX_BLEND 8      /* segments blended into one binding */
+#define BLEND_RATIO 1.6f /* segments up to BLEND_RATIO x nearest + BLEND_MM take part */
 #define BLEND_MM 2.0f
-#define FACING_FULL 0.2f  /* n_s . n_d from which on the facing rule does not weaken a binding */
-#define ABOVE_FULL 0.6f   /* from -0.5 to 0.5 of this n_s . up a binding goes from none to full */
+#define FACING_FULL 0.2f /* n_s . n_d from which on the facing rule does not weaken a binding */
+#define ABOVE_FULL 0.6f  /* from -0.5 to 0.5 of this n_s . up a binding goes from none to full */
 
 enum { LIP_UPPER = 1, LIP_LOWER = 2 };
 
@@ -32,7 +33,7 @@ typedef struct binder {
     const float *arc; /* arc-length parameter of each fibre point */
     uint8_t *lip;     /* per node: LIP_UPPER, LIP_LOWER bits */
     uint8_t *muscle_lip;
-    uint8_t *muscle_node; /* explicit attach lists, (muscle_count x node_count) bits as bytes, NULL if there are none */
+    uint8_t *muscle_node; /* explicit attach lists (muscle_count x node_count), NULL if none */
     size_t binding_room, attach_room;
 } binder;
 
@@ -40,7 +41,8 @@ static touch meet_segment(const binder *b, uint32_t m, uint32_t fiber, uint32_t 
 {
     const ris_model *model = b->bake->model;
     const uint32_t columns = model->muscle[m].def->columns;
-    const float *depth = b->bake->grid_depth + b->bake->grid_first[m] + row * columns + (fiber - model->muscle[m].first_fiber);
+    const float *depth =
+        b->bake->grid_depth + b->bake->grid_first[m] + row * columns + (fiber - model->muscle[m].first_fiber);
     const uint32_t point = model->fiber[fiber].first_point + row;
     touch t = {.fiber = fiber, .segment = model->fiber[fiber].first_segment + row};
     const ris_segment *segment = &model->segment[t.segment];
@@ -53,7 +55,8 @@ static touch meet_segment(const binder *b, uint32_t m, uint32_t fiber, uint32_t 
     const ris_vec3 d = v3_sub(x, on_sheet);
     t.distance = v3_length(d);
     t.facing = v3_dot(v3_unit_or(d, segment->up), v4_xyz(model->rest_normal[node]));
-    const float near_depth = 0.5f * (depth[0] + depth[1]), far_depth = 0.5f * (depth[columns] + depth[columns + 1]);
+    const float near_depth = 0.5f * (depth[0] + depth[1]),
+                far_depth = 0.5f * (depth[columns] + depth[columns + 1]);
     t.depth = near_depth + (t.local.x + 0.5f) * (far_depth - near_depth);
     t.above = v3_dot(segment->up, v4_xyz(model->rest_normal[node]));
     t.along = b->arc[point] + (t.local.x + 0.5f) * (b->arc[point + 1] - b->arc[point]);
@@ -68,7 +71,8 @@ static bool may_bind(const binder *b, uint32_t m, uint32_t node)
     }
     const ris_muscle_def *def = b->bake->model->muscle[m].def;
     if (def->kind == RIS_MUSCLE_LINEAR && def->lip_drag_power > 0.0f && b->lip[node]) {
-        return false; /* the pulled corner drags both lips along the oris; a direct pull on one of them would part them */
+        /* the pulled corner drags both lips along the oris; a direct pull on one of them would part them */
+        return false;
     }
     return def->attach_auto || b->muscle_node[(size_t)m * b->bake->model->node_count + node];
 }
@@ -84,27 +88,34 @@ static ris_result grow(void *array, size_t *room, size_t count, size_t size, ris
     memcpy(&old, array, sizeof old);
     void *memory = realloc(old, wanted * size);
     if (!memory) {
-        return ris_fail(err, RIS_ERROR_MEMORY, "not enough memory for muscle attachments (%zu x %zu bytes)", wanted, size);
+        return ris_fail(err, RIS_ERROR_MEMORY, "not enough memory for muscle attachments (%zu x %zu bytes)",
+                        wanted, size);
     }
     memcpy(array, &memory, sizeof memory);
     *room = wanted;
     return RIS_OK;
 }
 
-static ris_result add_binding(binder *b, uint32_t m, uint32_t node, const touch *touches, uint32_t count, float weight, float along,
-                              ris_error *err)
+static ris_result add_binding(binder *b, uint32_t m, uint32_t node, const touch *touches, uint32_t count,
+                              float weight, float along, ris_error *err)
 {
     ris_model *model = b->bake->model;
     const uint32_t binding_count = model->binding_start[node + 1];
-    ris_result result = grow(&model->binding, &b->binding_room, (size_t)binding_count + 1, sizeof *model->binding, err);
+    ris_result result =
+        grow(&model->binding, &b->binding_room, (size_t)binding_count + 1, sizeof *model->binding, err);
     if (result == RIS_OK) {
-        result = grow(&model->attach, &b->attach_room, (size_t)model->attach_count + count, sizeof *model->attach, err);
+        result = grow(&model->attach, &b->attach_room, (size_t)model->attach_count + count,
+                      sizeof *model->attach, err);
     }
     if (result != RIS_OK) {
         return result;
     }
     ris_binding *binding = &model->binding[binding_count];
-    *binding = (ris_binding){.muscle = m, .first_attach = model->attach_count, .attach_count = count, .weight = weight, .along = along};
+    *binding = (ris_binding){.muscle = m,
+                             .first_attach = model->attach_count,
+                             .attach_count = count,
+                             .weight = weight,
+                             .along = along};
     for (uint32_t k = 0; k < count; ++k) {
         const ris_segment *segment = &model->segment[touches[k].segment];
         const ris_vec3 *p = model->fiber_point + model->fiber[touches[k].fiber].first_point +
@@ -206,7 +217,8 @@ static ris_result bind_nearest(binder *b, uint32_t node, ris_error *err)
         }
     }
     nearest.share = 1.0f;
-    return best < INFINITY ? add_binding(b, best_muscle, node, &nearest, 1, 1.0f, nearest.along, err) : RIS_OK;
+    return best < INFINITY ? add_binding(b, best_muscle, node, &nearest, 1, 1.0f, nearest.along, err)
+                           : RIS_OK;
 }
 
 static uint32_t nearest_node(const ris_model *model, ris_vec3 p)
@@ -230,7 +242,8 @@ static ris_result sort_lips(binder *b, ris_error *err)
     const ris_head *head = b->bake->head;
     ris_result result = ris__model_alloc(&b->lip, model->node_count, sizeof *b->lip, "lip flags", err);
     if (result == RIS_OK) {
-        result = ris__model_alloc(&b->muscle_lip, model->muscle_count, sizeof *b->muscle_lip, "lip flags", err);
+        result =
+            ris__model_alloc(&b->muscle_lip, model->muscle_count, sizeof *b->muscle_lip, "lip flags", err);
     }
     if (result != RIS_OK) {
         return result;
@@ -269,12 +282,14 @@ static ris_result mark_lists(binder *b, ris_error *err)
     if (!any) {
         return RIS_OK;
     }
-    ris_result result = ris__model_alloc(&b->muscle_node, (size_t)model->muscle_count * model->node_count, 1, "attach lists", err);
+    ris_result result = ris__model_alloc(&b->muscle_node, (size_t)model->muscle_count * model->node_count, 1,
+                                         "attach lists", err);
     for (uint32_t m = 0; result == RIS_OK && m < model->muscle_count; ++m) {
         const ris_muscle_def *def = model->muscle[m].def;
         for (uint32_t k = 0; !def->attach_auto && k < def->attach_count; ++k) {
             if (def->attach[k] >= model->node_count) {
-                return ris_fail(err, RIS_ERROR_DATA, "muscle %s is attached to vertex %u, but the skin has %u", def->name,
+                return ris_fail(err, RIS_ERROR_DATA,
+                                "muscle %s is attached to vertex %u, but the skin has %u", def->name,
                                 def->attach[k], model->node_count);
             }
             b->muscle_node[(size_t)m * model->node_count + def->attach[k]] = 1;
@@ -310,10 +325,11 @@ ris_result ris__bake_bindings(ris_bake *bake, ris_error *err)
     ris_model *model = bake->model;
     const bool literal = bake->head->tissue.model == RIS_TISSUE_KAEHLER;
     binder b = {.bake = bake};
-    ris_result result = ris__model_alloc(&model->binding_start, (size_t)model->node_count + 1, sizeof *model->binding_start,
-                                         "bindings", err);
+    ris_result result = ris__model_alloc(&model->binding_start, (size_t)model->node_count + 1,
+                                         sizeof *model->binding_start, "bindings", err);
     if (result == RIS_OK) {
-        result = ris__model_alloc(&bake->muscle_weight, model->node_count, sizeof *bake->muscle_weight, "bindings", err);
+        result = ris__model_alloc(&bake->muscle_weight, model->node_count, sizeof *bake->muscle_weight,
+                                  "bindings", err);
     }
     float *arc = result == RIS_OK ? measure_arcs(model, err) : NULL;
     result = result == RIS_OK && !arc ? RIS_ERROR_MEMORY : result;

@@ -1,12 +1,13 @@
-/* KA-23 fibres, KA-24 segment frames, KA-27 muscle-level points, KA-37 smallest rotation, KA-40 muscle creation, KA-41 skull or
- * jaw. A fibre lies between two grid columns, a control point midway between the two points of a row. */
+/* KA-23 fibres, KA-24 segment frames, KA-27 muscle-level points, KA-37 smallest rotation, KA-40 muscle
+ * creation, KA-41 skull or jaw. A fibre lies between two grid columns, a control point midway between the
+ * two points of a row. */
 #include "model_impl.h"
 #include "vec3.h"
 
 #include <string.h>
 
-ris_vec3 ris__segment_point(const ris_segment *segment, ris_vec3 p0, ris_vec3 p1, ris_vec3 a, ris_vec3 b, float bulge,
-                            ris_vec3 local)
+ris_vec3 ris__segment_point(const ris_segment *segment, ris_vec3 p0, ris_vec3 p1, ris_vec3 a, ris_vec3 b,
+                            float bulge, ris_vec3 local)
 {
     const ris_vec3 v = v3_sub(p1, p0), w = v3_sub(b, a);
     const float stretch = f_max(v3_length(w) / v3_length(v), 0.01f);
@@ -24,7 +25,8 @@ ris_vec3 ris__segment_point(const ris_segment *segment, ris_vec3 p0, ris_vec3 p1
     return v3_add(v3_scale(v3_add(a, b), 0.5f), offset);
 }
 
-ris_vec3 ris__muscle_point(const ris_model *model, const ris_muscle *muscle, const ris_vec3 *points, uint32_t point)
+ris_vec3 ris__muscle_point(const ris_model *model, const ris_muscle *muscle, const ris_vec3 *points,
+                           uint32_t point)
 {
     ris_vec3 sum = {0};
     for (uint32_t f = 0; f < muscle->fiber_count; ++f) {
@@ -56,7 +58,8 @@ static bool votes_for_jaw(const ris_bake *bake, const ris_muscle_def *def)
     return 2 * rows_on_jaw > def->rows;
 }
 
-static ris_result make_segment(ris_bake *bake, uint32_t m, uint32_t fiber, uint32_t row, ris_segment *out, ris_error *err)
+static ris_result make_segment(ris_bake *bake, uint32_t m, uint32_t fiber, uint32_t row, ris_segment *out,
+                               ris_error *err)
 {
     const ris_muscle_def *def = &bake->head->muscle[m];
     const ris_model *model = bake->model;
@@ -75,7 +78,8 @@ static ris_result make_segment(ris_bake *bake, uint32_t m, uint32_t fiber, uint3
     out->wide = v3_unit_or(v3_cross(out->along, up), none);
     out->up = v3_cross(out->wide, out->along);
     if (!(out->size.x > 1e-3f) || !(out->size.z > 1e-3f) || !(v3_dot(out->wide, out->wide) > 0.5f)) {
-        return ris_fail(err, RIS_ERROR_DATA, "muscle %s: the cell at row %u, column %u of its grid is flat or turned on edge",
+        return ris_fail(err, RIS_ERROR_DATA,
+                        "muscle %s: the cell at row %u, column %u of its grid is flat or turned on edge",
                         def->name, row, local_fiber);
     }
     return RIS_OK;
@@ -109,7 +113,8 @@ static ris_result make_muscle(ris_bake *bake, uint32_t m, ris_error *err)
             model->fiber_point[model->fiber_point_count++] = v3_scale(v3_add(grid[0], grid[1]), 0.5f);
         }
         for (uint32_t r = 0; r + 1 < def->rows; ++r) {
-            ris_result result = make_segment(bake, m, model->fiber_count, r, &model->segment[model->segment_count], err);
+            ris_result result =
+                make_segment(bake, m, model->fiber_count, r, &model->segment[model->segment_count], err);
             if (result != RIS_OK) {
                 return result;
             }
@@ -129,12 +134,14 @@ ris_result ris__bake_muscles(ris_bake *bake, ris_error *err)
         fibers += head->muscle[m].columns - 1;
         points += (size_t)(head->muscle[m].columns - 1) * head->muscle[m].rows;
     }
-    ris_result result = ris__model_alloc(&model->muscle, head->muscle_count, sizeof *model->muscle, "muscles", err);
+    ris_result result =
+        ris__model_alloc(&model->muscle, head->muscle_count, sizeof *model->muscle, "muscles", err);
     if (result == RIS_OK) {
         result = ris__model_alloc(&model->fiber, fibers, sizeof *model->fiber, "fibres", err);
     }
     if (result == RIS_OK) {
-        result = ris__model_alloc(&model->fiber_point, points, sizeof *model->fiber_point, "fibre points", err);
+        result =
+            ris__model_alloc(&model->fiber_point, points, sizeof *model->fiber_point, "fibre points", err);
     }
     if (result == RIS_OK) {
         result = ris__model_alloc(&model->segment, points, sizeof *model->segment, "segments", err);

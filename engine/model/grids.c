@@ -1,13 +1,15 @@
-/* KA-38 grid initialisation (without refinement, KA-39): a muscle's grid is projected on the skin and sunk to the middle of the
- * muscle layer, skin_mm + (min + max) / 4 below it. A grid point that lies deeper than that keeps its place, as the control points
- * of KA-39 do: real muscles dive below fat on their way to the bone. */
+/* KA-38 grid initialisation (without refinement, KA-39): a muscle's grid is projected on the skin and sunk
+ * to the middle of the muscle layer, skin_mm + (min + max) / 4 below it. A grid point that lies deeper
+ * than that keeps its place, as the control points of KA-39 do: real muscles dive below fat on their way
+ * to the bone. */
 #include "model_impl.h"
 #include "vec3.h"
 
 #include <stdlib.h>
 
-#define FACING 0.3f         /* a triangle belongs to the skin over the grid if the cosine of the normals exceeds this */
-#define FARTHEST_MM 40.0f   /* a grid point this far from the skin is a mistake */
+#define FACING                                                                                               \
+    0.3f /* a triangle belongs to the skin over the grid if the cosine of the normals exceeds this */
+#define FARTHEST_MM 40.0f /* a grid point this far from the skin is a mistake */
 
 /* Closest point of a triangle (Ericson, Real-Time Collision Detection 5.1.5). */
 static ris_vec3 closest_on_triangle(ris_vec3 p, ris_vec3 a, ris_vec3 b, ris_vec3 c)
@@ -53,10 +55,13 @@ static bool project_on_skin(const ris_bake *bake, ris_vec3 p, ris_vec3 normal, r
     for (uint32_t t = 0; t < model->triangle_count; ++t) {
         const uint32_t *v = model->triangle + 3 * (size_t)t;
         ris_vec3 a = position[v[0]], b = position[v[1]], c = position[v[2]];
-        ris_vec3 low = v3(f_min(a.x, f_min(b.x, c.x)), f_min(a.y, f_min(b.y, c.y)), f_min(a.z, f_min(b.z, c.z)));
-        ris_vec3 high = v3(f_max(a.x, f_max(b.x, c.x)), f_max(a.y, f_max(b.y, c.y)), f_max(a.z, f_max(b.z, c.z)));
-        ris_vec3 gap = v3(f_max(f_max(low.x - p.x, p.x - high.x), 0.0f), f_max(f_max(low.y - p.y, p.y - high.y), 0.0f),
-                          f_max(f_max(low.z - p.z, p.z - high.z), 0.0f));
+        ris_vec3 low =
+            v3(f_min(a.x, f_min(b.x, c.x)), f_min(a.y, f_min(b.y, c.y)), f_min(a.z, f_min(b.z, c.z)));
+        ris_vec3 high =
+            v3(f_max(a.x, f_max(b.x, c.x)), f_max(a.y, f_max(b.y, c.y)), f_max(a.z, f_max(b.z, c.z)));
+        ris_vec3 gap =
+            v3(f_max(f_max(low.x - p.x, p.x - high.x), 0.0f), f_max(f_max(low.y - p.y, p.y - high.y), 0.0f),
+               f_max(f_max(low.z - p.z, p.z - high.z), 0.0f));
         if (!(v3_dot(gap, gap) < best)) {
             continue;
         }
@@ -115,16 +120,17 @@ static void grid_normals(const ris_bake *bake, const ris_muscle_def *def, ris_ve
 static ris_result check_def(const ris_muscle_def *def, ris_error *err)
 {
     if (def->rows < 2 || def->columns < 2 || def->rows > 1000 || def->columns > 1000) {
-        return ris_fail(err, RIS_ERROR_DATA, "muscle %s has a grid of %u x %u points, expected 2..1000 rows and columns", def->name,
-                        def->rows, def->columns);
+        return ris_fail(err, RIS_ERROR_DATA,
+                        "muscle %s has a grid of %u x %u points, expected 2..1000 rows and columns",
+                        def->name, def->rows, def->columns);
     }
     if (!(def->max_shortening >= 0.0f && def->max_shortening <= 0.95f)) {
         return ris_fail(err, RIS_ERROR_DATA, "muscle %s: max_shortening is %g, expected 0..0.95", def->name,
                         (double)def->max_shortening);
     }
     if (!(def->thickness_mm[0] > 0.0f && def->thickness_mm[1] >= def->thickness_mm[0])) {
-        return ris_fail(err, RIS_ERROR_DATA, "muscle %s: thickness is %g..%g mm, expected 0 < min <= max", def->name,
-                        (double)def->thickness_mm[0], (double)def->thickness_mm[1]);
+        return ris_fail(err, RIS_ERROR_DATA, "muscle %s: thickness is %g..%g mm, expected 0 < min <= max",
+                        def->name, (double)def->thickness_mm[0], (double)def->thickness_mm[1]);
     }
     return RIS_OK;
 }
@@ -132,14 +138,16 @@ static ris_result check_def(const ris_muscle_def *def, ris_error *err)
 static ris_result sink_grid(ris_bake *bake, uint32_t m, ris_error *err)
 {
     const ris_muscle_def *def = &bake->head->muscle[m];
-    ris_vec3 *point = bake->grid_point + bake->grid_first[m], *normal = bake->grid_normal + bake->grid_first[m];
+    ris_vec3 *point = bake->grid_point + bake->grid_first[m],
+             *normal = bake->grid_normal + bake->grid_first[m];
     const float depth = bake->head->tissue.skin_mm + (def->thickness_mm[0] + def->thickness_mm[1]) / 4.0f;
     grid_normals(bake, def, normal);
     for (uint32_t k = 0; k < def->rows * def->columns; ++k) {
         ris_vec3 on_skin = {0};
         if (!project_on_skin(bake, def->grid[k], normal[k], &on_skin)) {
-            return ris_fail(err, RIS_ERROR_DATA, "muscle %s: grid row %u, column %u has no skin within %g mm that faces it", def->name,
-                            k / def->columns, k % def->columns, (double)FARTHEST_MM);
+            return ris_fail(err, RIS_ERROR_DATA,
+                            "muscle %s: grid row %u, column %u has no skin within %g mm that faces it",
+                            def->name, k / def->columns, k % def->columns, (double)FARTHEST_MM);
         }
         const float own = v3_dot(v3_sub(on_skin, def->grid[k]), normal[k]);
         point[k] = own > depth ? def->grid[k] : v3_mad(on_skin, -depth, normal[k]);
@@ -151,8 +159,8 @@ static ris_result sink_grid(ris_bake *bake, uint32_t m, ris_error *err)
 ris_result ris__bake_grids(ris_bake *bake, ris_error *err)
 {
     const ris_head *head = bake->head;
-    ris_result result = ris__model_alloc(&bake->grid_first, (size_t)head->muscle_count + 1, sizeof *bake->grid_first, "muscle grids",
-                                         err);
+    ris_result result = ris__model_alloc(&bake->grid_first, (size_t)head->muscle_count + 1,
+                                         sizeof *bake->grid_first, "muscle grids", err);
     uint32_t total = 0;
     for (uint32_t m = 0; result == RIS_OK && m < head->muscle_count; ++m) {
         result = check_def(&head->muscle[m], err);

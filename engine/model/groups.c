@@ -1,7 +1,8 @@
-/* KA-28 constraint groups. The thesis intersects segment shapes; here an end of one muscle joins a point of another when the
- * distance of the muscle-level points is below the sum of half the larger of thickness and width, plus 6 mm. In the kaehler tissue
- * every end may join any point of another muscle; in the default tissue only sphincter ends and the ends of muscles with a lip
- * drag join (the corners of the mouth), all else being blended by weights. */
+/* KA-28 constraint groups. The thesis intersects segment shapes; here an end of one muscle joins a point
+ * of another when the distance of the muscle-level points is below the sum of half the larger of thickness
+ * and width, plus 6 mm. In the kaehler tissue every end may join any point of another muscle; in the
+ * default tissue only sphincter ends and the ends of muscles with a lip drag join (the corners of the
+ * mouth), all else being blended by weights. */
 #include "model_impl.h"
 #include "vec3.h"
 
@@ -48,7 +49,8 @@ static uint32_t list_candidates(const ris_bake *bake, end_point *list)
         const ris_muscle *muscle = &model->muscle[m];
         for (uint32_t i = 0; i < muscle->point_count; ++i) {
             bool end = is_end(muscle, i);
-            if (!literal && !(end && (muscle->kind == RIS_MUSCLE_SPHINCTER || muscle->lip_drag_power > 0.0f))) {
+            if (!literal &&
+                !(end && (muscle->kind == RIS_MUSCLE_SPHINCTER || muscle->lip_drag_power > 0.0f))) {
                 continue;
             }
             if (list) {
@@ -63,7 +65,8 @@ static uint32_t list_candidates(const ris_bake *bake, end_point *list)
 }
 
 /* Joins ends to the closest near point of every other muscle. linked marks the points that take part. */
-static void join(const ris_model *model, const end_point *list, uint32_t count, uint32_t *parent, bool *linked)
+static void join(const ris_model *model, const end_point *list, uint32_t count, uint32_t *parent,
+                 bool *linked)
 {
     for (uint32_t a = 0; a < count; ++a) {
         if (!list[a].is_end) {
@@ -78,7 +81,8 @@ static void join(const ris_model *model, const end_point *list, uint32_t count, 
             for (; b < count && list[b].muscle == muscle; ++b) {
                 const ris_muscle *mb = &model->muscle[muscle];
                 float d = v3_distance(pa, ris__muscle_point(model, mb, model->fiber_point, list[b].point));
-                if (muscle != list[a].muscle && d < reach + half_extent(model, mb, list[b].point) && d < best) {
+                if (muscle != list[a].muscle && d < reach + half_extent(model, mb, list[b].point) &&
+                    d < best) {
                     best = d;
                     closest = b;
                 }
@@ -91,12 +95,14 @@ static void join(const ris_model *model, const end_point *list, uint32_t count, 
     }
 }
 
-static ris_result fill_groups(ris_model *model, const end_point *list, uint32_t count, const uint32_t *parent, const bool *linked,
-                              ris_error *err)
+static ris_result fill_groups(ris_model *model, const end_point *list, uint32_t count, const uint32_t *parent,
+                              const bool *linked, ris_error *err)
 {
-    ris_result result = ris__model_alloc(&model->group, count, sizeof *model->group, "constraint groups", err);
+    ris_result result =
+        ris__model_alloc(&model->group, count, sizeof *model->group, "constraint groups", err);
     if (result == RIS_OK) {
-        result = ris__model_alloc(&model->group_point, count, sizeof *model->group_point, "constraint groups", err);
+        result = ris__model_alloc(&model->group_point, count, sizeof *model->group_point, "constraint groups",
+                                  err);
     }
     for (uint32_t root = 0; result == RIS_OK && root < count; ++root) {
         ris_group group = {model->group_point_count, 0};
@@ -106,7 +112,8 @@ static ris_result fill_groups(ris_model *model, const end_point *list, uint32_t 
                 ris_group_point *point = &model->group_point[model->group_point_count++];
                 point->muscle = list[k].muscle;
                 point->point = list[k].point;
-                sum = v3_add(sum, ris__muscle_point(model, &model->muscle[point->muscle], model->fiber_point, point->point));
+                sum = v3_add(sum, ris__muscle_point(model, &model->muscle[point->muscle], model->fiber_point,
+                                                    point->point));
                 ++group.point_count;
             }
         }
@@ -114,13 +121,15 @@ static ris_result fill_groups(ris_model *model, const end_point *list, uint32_t 
             continue;
         }
         if (group.point_count > RIS_GROUP_MAX) {
-            return ris_fail(err, RIS_ERROR_DATA, "%u muscle ends meet near muscle %s, at most %d can", group.point_count,
+            return ris_fail(err, RIS_ERROR_DATA, "%u muscle ends meet near muscle %s, at most %d can",
+                            group.point_count,
                             model->muscle[model->group_point[group.first_point].muscle].name, RIS_GROUP_MAX);
         }
         const ris_vec3 centroid = v3_scale(sum, 1.0f / (float)group.point_count);
         for (uint32_t k = 0; k < group.point_count; ++k) {
             ris_group_point *point = &model->group_point[group.first_point + k];
-            ris_vec3 p = ris__muscle_point(model, &model->muscle[point->muscle], model->fiber_point, point->point);
+            ris_vec3 p =
+                ris__muscle_point(model, &model->muscle[point->muscle], model->fiber_point, point->point);
             point->rest_distance_mm = v3_distance(p, centroid);
         }
         model->group[model->group_count++] = group;

@@ -11,7 +11,8 @@ ris_result ris__model_alloc(void *out, size_t count, size_t size, const char *wh
     void *memory = calloc(count ? count : 1, size);
     memcpy(out, &memory, sizeof memory);
     if (!memory) {
-        return ris_fail(err, RIS_ERROR_MEMORY, "not enough memory for %s (%zu x %zu bytes)", what, count, size);
+        return ris_fail(err, RIS_ERROR_MEMORY, "not enough memory for %s (%zu x %zu bytes)", what, count,
+                        size);
     }
     return RIS_OK;
 }
@@ -50,11 +51,12 @@ static ris_result check_head(const ris_head *head, ris_error *err)
         return ris_fail(err, RIS_ERROR_DATA, "substeps is %u, expected 1..1024", tissue->substeps);
     }
     if (!(tissue->modulus[0] >= 0.0f) || !(tissue->modulus[1] >= tissue->modulus[0])) {
-        return ris_fail(err, RIS_ERROR_DATA, "modulus is %g, %g, expected 0 <= low <= high", (double)tissue->modulus[0],
-                        (double)tissue->modulus[1]);
+        return ris_fail(err, RIS_ERROR_DATA, "modulus is %g, %g, expected 0 <= low <= high",
+                        (double)tissue->modulus[0], (double)tissue->modulus[1]);
     }
     if (!ris_head_region(head, head->simulated)) {
-        return ris_fail(err, RIS_ERROR_DATA, "simulated region \"%s\" is not among the regions", head->simulated);
+        return ris_fail(err, RIS_ERROR_DATA, "simulated region \"%s\" is not among the regions",
+                        head->simulated);
     }
     return RIS_OK;
 }
@@ -162,8 +164,8 @@ ris_result ris__bake_channels(ris_bake *bake, ris_error *err)
 {
     ris_model *model = bake->model;
     const uint32_t fixed = ris__beside_channel_count;
-    ris_result result = ris__model_alloc(&model->channel, (size_t)model->muscle_count + fixed, sizeof *model->channel,
-                                         "channels", err);
+    ris_result result = ris__model_alloc(&model->channel, (size_t)model->muscle_count + fixed,
+                                         sizeof *model->channel, "channels", err);
     if (result != RIS_OK) {
         return result;
     }

@@ -1,4 +1,5 @@
-/* Builders of ris_model, in the order ris_model_create calls them. Each fills its fields and says what is wrong with the head. */
+/* Builders of ris_model, in the order ris_model_create calls them. Each fills its fields and says what is
+ * wrong with the head. */
 #pragma once
 
 #include "risorius/model.h"
@@ -11,11 +12,11 @@ typedef struct ris_bake {
     const ris_head *head;
     uint32_t *ring_triangle; /* triangle of each ring entry (3 x triangle_count) */
     float *triangle_area;    /* mm^2 (triangle_count) */
-    bool *moving;         /* in the simulated region (node_count) */
-    float *muscle_weight; /* largest binding weight, 0..1 (node_count) */
-    ris_vec3 *grid_point; /* grids projected and sunk below the skin (sum of rows x columns) */
+    bool *moving;            /* in the simulated region (node_count) */
+    float *muscle_weight;    /* largest binding weight, 0..1 (node_count) */
+    ris_vec3 *grid_point;    /* grids projected and sunk below the skin (sum of rows x columns) */
     ris_vec3 *grid_normal;
-    float *grid_depth; /* below the skin, mm */
+    float *grid_depth;    /* below the skin, mm */
     uint32_t *grid_first; /* first grid point of each muscle (muscle_count + 1) */
 } ris_bake;
 
@@ -45,10 +46,11 @@ ris_result ris__bake_channels(ris_bake *bake, ris_error *err);
 /* Node -> true for the vertices of a region; flags are added to, (node_count). */
 void ris__region_flags(const ris_head *head, const char *name, bool *flags);
 
-/* Point `local` (unscaled affine coordinates) of a segment whose ends are now a, b and whose height is scaled by bulge (KA-37).
- * p0, p1 are the ends the segment's frame was built from. */
-ris_vec3 ris__segment_point(const ris_segment *segment, ris_vec3 p0, ris_vec3 p1, ris_vec3 a, ris_vec3 b, float bulge,
-                            ris_vec3 local);
+/* Point `local` (unscaled affine coordinates) of a segment whose ends are now a, b and whose height is
+ * scaled by bulge (KA-37). p0, p1 are the ends the segment's frame was built from. */
+ris_vec3 ris__segment_point(const ris_segment *segment, ris_vec3 p0, ris_vec3 p1, ris_vec3 a, ris_vec3 b,
+                            float bulge, ris_vec3 local);
 
 /* Mean over the fibres of control point `point` (KA-27). */
-ris_vec3 ris__muscle_point(const ris_model *model, const ris_muscle *muscle, const ris_vec3 *points, uint32_t point);
+ris_vec3 ris__muscle_point(const ris_model *model, const ris_muscle *muscle, const ris_vec3 *points,
+                           uint32_t point);

@@ -1,5 +1,5 @@
-/* KA-09 moving nodes, KA-10 springs, KA-11 area ratio, KA-13 mass, the bending umbrella (spec/prototype.md 5) and the stable
- * time step (spec/kaehler.md 2.9). */
+/* KA-09 moving nodes, KA-10 springs, KA-11 area ratio, KA-13 mass, the bending umbrella (spec/prototype.md
+ * 5) and the stable time step (spec/kaehler.md 2.9). */
 #include "model_impl.h"
 #include "vec3.h"
 
@@ -25,19 +25,23 @@ ris_result ris__bake_mass(ris_bake *bake, ris_error *err)
             area_mm2 += (double)bake->triangle_area[t];
         }
         /* 1 kg/m^3 = 1e-6 g/mm^3 */
-        model->mass_g = (float)((double)tissue->density_kg_m3 * 1e-6 * (double)tissue->skin_mm * area_mm2 / n);
+        model->mass_g =
+            (float)((double)tissue->density_kg_m3 * 1e-6 * (double)tissue->skin_mm * area_mm2 / n);
     }
     if (!(model->mass_g > 0.0f) || !isfinite(model->mass_g)) {
-        return ris_fail(err, RIS_ERROR_DATA, "node mass is %g g, expected more than 0", (double)model->mass_g);
+        return ris_fail(err, RIS_ERROR_DATA, "node mass is %g g, expected more than 0",
+                        (double)model->mass_g);
     }
     for (uint32_t i = 0; i < n; ++i) {
-        model->rest_position[i] = v4_from(bake->head->skin.position[i], bake->moving[i] ? 1.0f / model->mass_g : 0.0f);
+        model->rest_position[i] =
+            v4_from(bake->head->skin.position[i], bake->moving[i] ? 1.0f / model->mass_g : 0.0f);
         model->moving_count += bake->moving[i];
     }
     return RIS_OK;
 }
 
-/* Neighbours of node i, ascending, with the sum of the areas at each edge. Returns their number; room for 2 x ring size. */
+/* Neighbours of node i, ascending, with the sum of the areas at each edge. Returns their number; room for
+ * 2 x ring size. */
 static uint32_t collect_edges(const ris_bake *bake, uint32_t i, uint32_t *other, float *area)
 {
     const ris_model *model = bake->model;
@@ -74,7 +78,8 @@ static uint32_t largest_ring(const ris_model *model)
     return largest;
 }
 
-/* Umbrella weights 1/length, normalised over the node; bend_in gathers the transpose (docs/physics.md, bend). */
+/* Umbrella weights 1/length, normalised over the node; bend_in gathers the transpose (docs/physics.md,
+ * bend). */
 static void weigh_umbrellas(ris_bake *bake)
 {
     ris_model *model = bake->model;
@@ -138,11 +143,11 @@ ris_result ris__bake_springs(ris_bake *bake, ris_error *err)
     const uint32_t room = 2 * largest_ring(model);
     uint32_t *other = NULL;
     float *area = NULL;
-    ris_result result = ris__model_alloc(&model->spring_start, (size_t)model->node_count + 1, sizeof *model->spring_start,
-                                         "springs", err);
+    ris_result result = ris__model_alloc(&model->spring_start, (size_t)model->node_count + 1,
+                                         sizeof *model->spring_start, "springs", err);
     if (result == RIS_OK) { /* each of a node's ring entries gives at most two edges */
-        result = ris__model_alloc(&model->half_spring, 6 * (size_t)model->triangle_count, sizeof *model->half_spring, "springs",
-                                  err);
+        result = ris__model_alloc(&model->half_spring, 6 * (size_t)model->triangle_count,
+                                  sizeof *model->half_spring, "springs", err);
     }
     if (result == RIS_OK) {
         result = ris__model_alloc(&other, room, sizeof *other, "springs", err);
@@ -161,7 +166,8 @@ ris_result ris__bake_springs(ris_bake *bake, ris_error *err)
     return result;
 }
 
-/* Absolute row sum of the stiffness matrix at rest: springs on the low modulus, umbrellas, anchor (Gershgorin). */
+/* Absolute row sum of the stiffness matrix at rest: springs on the low modulus, umbrellas, anchor
+ * (Gershgorin). */
 static double row_stiffness(const ris_model *model, const ris_tissue_def *tissue, uint32_t i)
 {
     double sum = 0.0, own_out = 0.0;
@@ -189,7 +195,8 @@ ris_result ris__bake_push(ris_bake *bake, ris_error *err)
     const float scale = kaehler ? 1.0f : tissue->stiffness_scale;
     ris_sim_push *push = &model->push;
     push->node_count = model->node_count;
-    push->flags = (kaehler ? RIS_TISSUE_FLAG_KAEHLER : 0u) | (tissue->continuous ? RIS_TISSUE_FLAG_CONTINUOUS : 0u);
+    push->flags =
+        (kaehler ? RIS_TISSUE_FLAG_KAEHLER : 0u) | (tissue->continuous ? RIS_TISSUE_FLAG_CONTINUOUS : 0u);
     push->dt_s = (float)(1.0 / 60.0 / tissue->substeps);
     push->modulus_low = tissue->modulus[0] * scale;
     push->modulus_high = tissue->modulus[1] * scale;
@@ -205,7 +212,9 @@ ris_result ris__bake_push(ris_bake *bake, ris_error *err)
             continue;
         }
         double w = row_stiffness(model, tissue, i) / (double)model->mass_g;
-        double dt = w > 0.0 ? (sqrt(damping * damping + 16.0 * w) - damping) / (2.0 * w) : damping > 0.0 ? 4.0 / damping : INFINITY;
+        double dt = w > 0.0         ? (sqrt(damping * damping + 16.0 * w) - damping) / (2.0 * w)
+                    : damping > 0.0 ? 4.0 / damping
+                                    : INFINITY;
         if (dt < stable) {
             stable = dt;
             worst = i;
@@ -214,8 +223,10 @@ ris_result ris__bake_push(ris_bake *bake, ris_error *err)
     model->stable_dt_s = (float)stable;
     if (!((double)push->dt_s < stable)) {
         return ris_fail(err, RIS_ERROR_DATA,
-                        "%u substeps are unstable: dt is %.3f ms, vertex %u allows %.3f ms; at least %.0f substeps are needed",
-                        tissue->substeps, (double)push->dt_s * 1e3, worst, stable * 1e3, floor(1.0 / 60.0 / stable) + 1.0);
+                        "%u substeps are unstable: dt is %.3f ms, vertex %u allows %.3f ms; at least %.0f "
+                        "substeps are needed",
+                        tissue->substeps, (double)push->dt_s * 1e3, worst, stable * 1e3,
+                        floor(1.0 / 60.0 / stable) + 1.0);
     }
     return RIS_OK;
 }

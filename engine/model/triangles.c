@@ -1,4 +1,5 @@
-/* KA-02 adjacency: mirror-symmetric triangulation of the skin, the triangle ring of every node, areas and rest normals (KA-20). */
+/* KA-02 adjacency: mirror-symmetric triangulation of the skin, the triangle ring of every node, areas and
+ * rest normals (KA-20). */
 #include "model_impl.h"
 #include "vec3.h"
 
@@ -18,10 +19,12 @@ static bool is_above(ris_vec3 a, ris_vec3 b)
     return fabsf(a.x) > fabsf(b.x);
 }
 
-/* true if the quad is split along corners 0-2: the shorter diagonal, and on a tie the one with the topmost vertex. */
+/* true if the quad is split along corners 0-2: the shorter diagonal, and on a tie the one with the topmost
+ * vertex. */
 static bool splits_along_02(const ris_vec3 *position, const uint32_t *corner)
 {
-    ris_vec3 a = position[corner[0]], b = position[corner[1]], c = position[corner[2]], d = position[corner[3]];
+    ris_vec3 a = position[corner[0]], b = position[corner[1]], c = position[corner[2]],
+             d = position[corner[3]];
     float ac = v3_distance(a, c), bd = v3_distance(b, d);
     if (fabsf(ac - bd) > DIAGONAL_TIE * f_max(ac, bd)) {
         return ac < bd;
@@ -47,13 +50,16 @@ static ris_result triangulate(ris_model *model, const ris_mesh *skin, ris_error 
     for (uint32_t f = 0; f < skin->face_count; ++f) {
         uint32_t corners = skin->face_start[f + 1] - skin->face_start[f];
         if (corners < 3) {
-            return ris_fail(err, RIS_ERROR_DATA, "face %u of the skin has %u corners, expected at least 3", f, corners);
+            return ris_fail(err, RIS_ERROR_DATA, "face %u of the skin has %u corners, expected at least 3", f,
+                            corners);
         }
         total += corners - 2;
     }
-    ris_result result = ris__model_alloc(&model->triangle, 3 * total, sizeof *model->triangle, "triangles", err);
+    ris_result result =
+        ris__model_alloc(&model->triangle, 3 * total, sizeof *model->triangle, "triangles", err);
     if (result == RIS_OK) {
-        result = ris__model_alloc(&model->triangle_corner, 3 * total, sizeof *model->triangle_corner, "corners", err);
+        result = ris__model_alloc(&model->triangle_corner, 3 * total, sizeof *model->triangle_corner,
+                                  "corners", err);
     }
     for (uint32_t f = 0; result == RIS_OK && f < skin->face_count; ++f) {
         uint32_t first = skin->face_start[f], corners = skin->face_start[f + 1] - first;
@@ -73,12 +79,14 @@ static ris_result build_ring(ris_bake *bake, ris_error *err)
 {
     ris_model *model = bake->model;
     const uint32_t n = model->node_count, corners = 3 * model->triangle_count;
-    ris_result result = ris__model_alloc(&model->ring_start, (size_t)n + 1, sizeof *model->ring_start, "the ring", err);
+    ris_result result =
+        ris__model_alloc(&model->ring_start, (size_t)n + 1, sizeof *model->ring_start, "the ring", err);
     if (result == RIS_OK) {
         result = ris__model_alloc(&model->ring, corners, sizeof *model->ring, "the ring", err);
     }
     if (result == RIS_OK) {
-        result = ris__model_alloc(&bake->ring_triangle, corners, sizeof *bake->ring_triangle, "the ring", err);
+        result =
+            ris__model_alloc(&bake->ring_triangle, corners, sizeof *bake->ring_triangle, "the ring", err);
     }
     if (result != RIS_OK) {
         return result;
@@ -104,7 +112,8 @@ static ris_result build_ring(ris_bake *bake, ris_error *err)
     return RIS_OK;
 }
 
-/* Every directed edge leaves a node once: else three triangles share an edge or two disagree about the outside. */
+/* Every directed edge leaves a node once: else three triangles share an edge or two disagree about the
+ * outside. */
 static ris_result check_edges(const ris_model *model, ris_error *err)
 {
     for (uint32_t i = 0; i < model->node_count; ++i) {
@@ -116,7 +125,8 @@ static ris_result check_edges(const ris_model *model, ris_error *err)
             for (uint32_t j = k + 1; j < end; ++j) {
                 if (model->ring[k].b == model->ring[j].b) {
                     return ris_fail(err, RIS_ERROR_DATA,
-                                    "edge %u-%u of the skin is used twice in one direction: not a manifold, or faces turned over",
+                                    "edge %u-%u of the skin is used twice in one direction: not a manifold, "
+                                    "or faces turned over",
                                     i, model->ring[k].b);
                 }
             }
@@ -129,22 +139,27 @@ static ris_result measure(ris_bake *bake, ris_error *err)
 {
     ris_model *model = bake->model;
     const ris_vec3 *position = bake->head->skin.position;
-    ris_result result = ris__model_alloc(&bake->triangle_area, model->triangle_count, sizeof *bake->triangle_area, "areas", err);
+    ris_result result = ris__model_alloc(&bake->triangle_area, model->triangle_count,
+                                         sizeof *bake->triangle_area, "areas", err);
     if (result == RIS_OK) {
-        result = ris__model_alloc(&model->node_area_mm2, model->node_count, sizeof *model->node_area_mm2, "areas", err);
+        result = ris__model_alloc(&model->node_area_mm2, model->node_count, sizeof *model->node_area_mm2,
+                                  "areas", err);
     }
     if (result == RIS_OK) {
-        result = ris__model_alloc(&model->rest_normal, model->node_count, sizeof *model->rest_normal, "normals", err);
+        result = ris__model_alloc(&model->rest_normal, model->node_count, sizeof *model->rest_normal,
+                                  "normals", err);
     }
     if (result != RIS_OK) {
         return result;
     }
     for (uint32_t t = 0; t < model->triangle_count; ++t) {
         const uint32_t *v = model->triangle + 3 * (size_t)t;
-        ris_vec3 cross = v3_cross(v3_sub(position[v[1]], position[v[0]]), v3_sub(position[v[2]], position[v[0]]));
+        ris_vec3 cross =
+            v3_cross(v3_sub(position[v[1]], position[v[0]]), v3_sub(position[v[2]], position[v[0]]));
         float area = 0.5f * v3_length(cross);
         if (!(area > 0.0f)) {
-            return ris_fail(err, RIS_ERROR_DATA, "triangle %u-%u-%u of the skin has no area", v[0], v[1], v[2]);
+            return ris_fail(err, RIS_ERROR_DATA, "triangle %u-%u-%u of the skin has no area", v[0], v[1],
+                            v[2]);
         }
         bake->triangle_area[t] = area;
     }

@@ -1,4 +1,5 @@
-/* Height-field scenes: a flat patch, or a cap with muscles of a mouth and a brow that have the names of the human ones. */
+/* Height-field scenes: a flat patch, or a cap with muscles of a mouth and a brow that have the names of
+ * the human ones. */
 #include "scenes/scenes.h"
 
 #include "model/model_impl.h"
@@ -11,7 +12,13 @@
 ris_scene_def ris_default_scene_def(void)
 {
     ris_scene_def def = {
-        .columns = 49, .rows = 61, .spacing_mm = 2.0f, .radius_mm = 90.0f, .depth_mm = 6.0f, .pinned_border = true, .rig = true,
+        .columns = 49,
+        .rows = 61,
+        .spacing_mm = 2.0f,
+        .radius_mm = 90.0f,
+        .depth_mm = 6.0f,
+        .pinned_border = true,
+        .rig = true,
         .tissue = ris_default_tissue(),
     };
     return def;
@@ -26,12 +33,15 @@ static ris_vec3 on_ground(const ris_scene_def *def, float x, float y)
 static ris_result make_mesh(const ris_scene_def *def, ris_mesh *mesh, ris_error *err)
 {
     const uint32_t columns = def->columns, rows = def->rows, faces = (columns - 1) * (rows - 1);
-    ris_result result = ris__model_alloc(&mesh->position, (size_t)columns * rows, sizeof *mesh->position, "a scene", err);
+    ris_result result =
+        ris__model_alloc(&mesh->position, (size_t)columns * rows, sizeof *mesh->position, "a scene", err);
     if (result == RIS_OK) {
-        result = ris__model_alloc(&mesh->face_start, (size_t)faces + 1, sizeof *mesh->face_start, "a scene", err);
+        result =
+            ris__model_alloc(&mesh->face_start, (size_t)faces + 1, sizeof *mesh->face_start, "a scene", err);
     }
     if (result == RIS_OK) {
-        result = ris__model_alloc(&mesh->face_vertex, 4 * (size_t)faces, sizeof *mesh->face_vertex, "a scene", err);
+        result = ris__model_alloc(&mesh->face_vertex, 4 * (size_t)faces, sizeof *mesh->face_vertex, "a scene",
+                                  err);
     }
     if (result == RIS_OK) {
         result = ris__model_alloc(&mesh->face_uv, 4 * (size_t)faces, sizeof *mesh->face_uv, "a scene", err);
@@ -45,7 +55,8 @@ static ris_result make_mesh(const ris_scene_def *def, ris_mesh *mesh, ris_error 
     const float half = 0.5f * def->spacing_mm;
     for (uint32_t r = 0; r < rows; ++r) {
         for (uint32_t c = 0; c < columns; ++c) {
-            const float x = (float)(2 * (int64_t)c - (columns - 1)) * half, y = (float)(2 * (int64_t)r - (rows - 1)) * half;
+            const float x = (float)(2 * (int64_t)c - (columns - 1)) * half,
+                        y = (float)(2 * (int64_t)r - (rows - 1)) * half;
             mesh->position[r * columns + c] = on_ground(def, x, y);
         }
     }
@@ -78,10 +89,11 @@ static bool is_lower_lip(const ris_scene_def *def, uint32_t c, uint32_t r, ris_v
     return p.y <= -25.0f && p.y > -34.0f && p.x > -20.0f && p.x < 20.0f;
 }
 
-static ris_result make_region(const ris_scene_def *def, const ris_mesh *mesh, const char *name, vertex_test test, ris_region *out,
-                              ris_error *err)
+static ris_result make_region(const ris_scene_def *def, const ris_mesh *mesh, const char *name,
+                              vertex_test test, ris_region *out, ris_error *err)
 {
-    ris_result result = ris__model_alloc(&out->vertex, mesh->vertex_count, sizeof *out->vertex, "a scene", err);
+    ris_result result =
+        ris__model_alloc(&out->vertex, mesh->vertex_count, sizeof *out->vertex, "a scene", err);
     snprintf(out->name, sizeof out->name, "%s", name);
     for (uint32_t i = 0; result == RIS_OK && i < mesh->vertex_count; ++i) {
         if (test(def, i % def->columns, i / def->columns, mesh->position[i])) {
@@ -115,9 +127,17 @@ static ris_result make_muscle(const ris_scene_def *def, const band *b, ris_muscl
 {
     snprintf(out->name, sizeof out->name, "%s", b->name);
     *out = (ris_muscle_def){
-        .kind = b->kind, .bone = RIS_BONE_AUTO, .rows = b->rows, .columns = b->columns, .thickness_mm = {2, 6},
-        .max_shortening = b->max_shortening, .radius_mm = b->radius_mm, .insertion_start = b->insertion_start,
-        .lip_drag_power = b->lip_drag_power, .gain = 1.2f, .attach_auto = true,
+        .kind = b->kind,
+        .bone = RIS_BONE_AUTO,
+        .rows = b->rows,
+        .columns = b->columns,
+        .thickness_mm = {2, 6},
+        .max_shortening = b->max_shortening,
+        .radius_mm = b->radius_mm,
+        .insertion_start = b->insertion_start,
+        .lip_drag_power = b->lip_drag_power,
+        .gain = 1.2f,
+        .attach_auto = true,
         .has_axis = b->kind == RIS_MUSCLE_SPHINCTER,
     };
     snprintf(out->name, sizeof out->name, "%s", b->name);
@@ -125,7 +145,8 @@ static ris_result make_muscle(const ris_scene_def *def, const band *b, ris_muscl
     out->axis[0] = v3(0.0f, -25.0f, centre.z - 20.0f);
     out->axis[1] = v3(0.0f, -25.0f, centre.z + 5.0f);
     char **const texts[] = {&out->origin, &out->insertion, &out->source};
-    ris_result result = ris__model_alloc(&out->grid, (size_t)b->rows * b->columns, sizeof *out->grid, "a scene", err);
+    ris_result result =
+        ris__model_alloc(&out->grid, (size_t)b->rows * b->columns, sizeof *out->grid, "a scene", err);
     for (size_t k = 0; result == RIS_OK && k < sizeof texts / sizeof texts[0]; ++k) {
         result = ris__model_alloc(texts[k], 1, 1, "a scene", err);
     }
@@ -135,7 +156,8 @@ static ris_result make_muscle(const ris_scene_def *def, const band *b, ris_muscl
         const float s = (2.0f * (float)(k % b->columns) / (float)(b->columns - 1) - 1.0f) * -b->half_width;
         /* mirror images: the columns of a right muscle run the other way across */
         const float across = b->from[0] < 0.0f && b->kind == RIS_MUSCLE_LINEAR ? -s : s;
-        out->grid[k] = on_ground(def, b->from[0] + t * dx + across * dy / length, b->from[1] + t * dy - across * dx / length);
+        out->grid[k] = on_ground(def, b->from[0] + t * dx + across * dy / length,
+                                 b->from[1] + t * dy - across * dx / length);
     }
     return result;
 }
@@ -158,13 +180,17 @@ ris_result ris_scene_head(const ris_scene_def *def, ris_head *out, ris_error *er
 {
     memset(out, 0, sizeof *out);
     const float width = def->spacing_mm * (float)def->columns, height = def->spacing_mm * (float)def->rows;
-    if (def->columns < 2 || def->rows < 2 || def->columns > 4096 || def->rows > 4096 || !(def->spacing_mm > 0.0f) ||
-        (def->radius_mm > 0.0f && !(4.0f * def->radius_mm * def->radius_mm > width * width + height * height))) {
-        return ris_fail(err, RIS_ERROR_USAGE, "a scene of %u x %u nodes, %g mm apart, radius %g mm is impossible", def->columns,
+    if (def->columns < 2 || def->rows < 2 || def->columns > 4096 || def->rows > 4096 ||
+        !(def->spacing_mm > 0.0f) ||
+        (def->radius_mm > 0.0f &&
+         !(4.0f * def->radius_mm * def->radius_mm > width * width + height * height))) {
+        return ris_fail(err, RIS_ERROR_USAGE,
+                        "a scene of %u x %u nodes, %g mm apart, radius %g mm is impossible", def->columns,
                         def->rows, (double)def->spacing_mm, (double)def->radius_mm);
     }
     out->tissue = def->tissue;
-    out->jaw = (ris_jaw_def){.point = {0, 15, 0}, .axis = {1, 0, 0}, .open_deg = 20, .forward_mm = 8, .back_mm = 3, .side_mm = 6};
+    out->jaw = (ris_jaw_def){
+        .point = {0, 15, 0}, .axis = {1, 0, 0}, .open_deg = 20, .forward_mm = 8, .back_mm = 3, .side_mm = 6};
     snprintf(out->simulated, sizeof out->simulated, "face");
     ris_result result = make_mesh(def, &out->skin, err);
     if (result == RIS_OK) {
@@ -179,10 +205,12 @@ ris_result ris_scene_head(const ris_scene_def *def, ris_head *out, ris_error *er
         result = make_region(def, &out->skin, regions[k].name, regions[k].test, &out->region[k], err);
     }
     if (result == RIS_OK) {
-        result = ris__model_alloc(&out->depth_mm, out->skin.vertex_count, sizeof *out->depth_mm, "a scene", err);
+        result =
+            ris__model_alloc(&out->depth_mm, out->skin.vertex_count, sizeof *out->depth_mm, "a scene", err);
     }
     if (result == RIS_OK) {
-        result = ris__model_alloc(&out->jaw_weight, out->skin.vertex_count, sizeof *out->jaw_weight, "a scene", err);
+        result = ris__model_alloc(&out->jaw_weight, out->skin.vertex_count, sizeof *out->jaw_weight,
+                                  "a scene", err);
     }
     for (uint32_t i = 0; result == RIS_OK && i < out->skin.vertex_count; ++i) {
         out->depth_mm[i] = def->depth_mm;

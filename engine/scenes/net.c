@@ -58,7 +58,8 @@ static ris_result fill(ris_model *model, const ris_scene_net_def *def, ris_error
     model->head = model->owned_head;
     model->owned_head->tissue = *tissue;
     model->owned_head->jaw.axis = v3(1, 0, 0);
-    if (ris__model_alloc(&model->owned_head->jaw_weight, def->node_count, sizeof(float), "a net", err) != RIS_OK) {
+    if (ris__model_alloc(&model->owned_head->jaw_weight, def->node_count, sizeof(float), "a net", err) !=
+        RIS_OK) {
         return RIS_ERROR_MEMORY;
     }
     model->jaw_weight = model->owned_head->jaw_weight;
@@ -70,7 +71,8 @@ static ris_result fill(ris_model *model, const ris_scene_net_def *def, ris_error
         const bool pinned = def->pinned && def->pinned[i];
         model->rest_position[i] = v4_from(def->position[i], pinned ? 0.0f : 1.0f / def->mass_g);
         model->rest_normal[i].z = 1.0f;
-        model->bone_anchor[i] = v3_sub(def->position[i], v3(0, 0, def->anchor ? def->anchor[i].rest_mm : 0.0f));
+        model->bone_anchor[i] =
+            v3_sub(def->position[i], v3(0, 0, def->anchor ? def->anchor[i].rest_mm : 0.0f));
         model->moving_count += !pinned;
         if (def->anchor) {
             model->anchor_param[i] = def->anchor[i];

@@ -7,7 +7,8 @@
 extern "C" {
 #endif
 
-/* A height field of quads over a flat or spherical ground, mirror-symmetric in x, y up, z out; node r * columns + c. */
+/* A height field of quads over a flat or spherical ground, mirror-symmetric in x, y up, z out; node r *
+ * columns + c. */
 typedef struct ris_scene_def {
     uint32_t columns, rows; /* nodes */
     float spacing_mm;
@@ -34,10 +35,10 @@ typedef struct ris_scene_spring {
 
 typedef struct ris_scene_net_def {
     uint32_t node_count, spring_count;
-    const ris_vec3 *position;        /* mm (node_count) */
-    const bool *pinned;              /* (node_count), NULL = none */
-    const ris_scene_spring *spring;  /* (spring_count) */
-    const ris_anchor_param *anchor;  /* (node_count), NULL = none */
+    const ris_vec3 *position;       /* mm (node_count) */
+    const bool *pinned;             /* (node_count), NULL = none */
+    const ris_scene_spring *spring; /* (spring_count) */
+    const ris_anchor_param *anchor; /* (node_count), NULL = none */
     float mass_g;
     float damping_per_s;
     ris_tissue_def tissue; /* model, law, modulus, substeps, compression */

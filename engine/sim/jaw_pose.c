@@ -1,5 +1,6 @@
-/* jaw_pose, first stage of a tick: KA-05 jaw rotation with the translations of jaw.forward and jaw.side, and the rigid poses of
- * eyes and head (KA-06, KA-48). Cosine and sine come from fixed series in double: the same bits on every machine. */
+/* jaw_pose, first stage of a tick: KA-05 jaw rotation with the translations of jaw.forward and jaw.side,
+ * and the rigid poses of eyes and head (KA-06, KA-48). Cosine and sine come from fixed series in double:
+ * the same bits on every machine. */
 #include "sim/rig.h"
 
 #include "model/vec3.h"
@@ -9,15 +10,27 @@
 #define PI 3.14159265358979323846
 
 enum {
-    JAW_OPEN, JAW_FORWARD, JAW_SIDE, EYE_YAW_L, EYE_YAW_R, EYE_PITCH_L, EYE_PITCH_R,
-    HEAD_YAW, HEAD_PITCH, HEAD_ROLL, HEAD_X, HEAD_Y, HEAD_Z
+    JAW_OPEN,
+    JAW_FORWARD,
+    JAW_SIDE,
+    EYE_YAW_L,
+    EYE_YAW_R,
+    EYE_PITCH_L,
+    EYE_PITCH_R,
+    HEAD_YAW,
+    HEAD_PITCH,
+    HEAD_ROLL,
+    HEAD_X,
+    HEAD_Y,
+    HEAD_Z
 }; /* the order of asset/channel.c; tests/unit/test_model.c checks it */
 
 /* Taylor series after halving the angle until it is small; only + and x, so no libm in what feeds a hash. */
 static void cos_sin(double angle, double *out_cos, double *out_sin)
 {
     const double x = angle / 16.0, s = x * x;
-    double sine = x * (1.0 - s / 6.0 * (1.0 - s / 20.0 * (1.0 - s / 42.0 * (1.0 - s / 72.0 * (1.0 - s / 110.0)))));
+    double sine =
+        x * (1.0 - s / 6.0 * (1.0 - s / 20.0 * (1.0 - s / 42.0 * (1.0 - s / 72.0 * (1.0 - s / 110.0)))));
     double versine = s / 2.0 * (1.0 - s / 12.0 * (1.0 - s / 30.0 * (1.0 - s / 56.0 * (1.0 - s / 90.0))));
     for (int k = 0; k < 4; ++k) { /* 1 - cos 2a = 2 sin^2 a, sin 2a = 2 sin a cos a */
         double cosine = 1.0 - versine;
@@ -34,9 +47,8 @@ ris_rigid ris__rigid_turn(ris_vec3 point, ris_vec3 axis, double angle_rad)
     cos_sin(angle_rad, &c, &s);
     const double x = (double)axis.x, y = (double)axis.y, z = (double)axis.z, v = 1.0 - c;
     const double r[9] = {
-        c + x * x * v,     x * y * v - z * s, x * z * v + y * s,
-        y * x * v + z * s, c + y * y * v,     y * z * v - x * s,
-        z * x * v - y * s, z * y * v + x * s, c + z * z * v,
+        c + x * x * v,     x * y * v - z * s, x * z * v + y * s, y * x * v + z * s, c + y * y * v,
+        y * z * v - x * s, z * x * v - y * s, z * y * v + x * s, c + z * z * v,
     };
     ris_rigid rigid = {.point = point, .identity = angle_rad == 0.0};
     for (int k = 0; k < 9; ++k) {
@@ -76,8 +88,9 @@ static ris_rigid turn_after(ris_rigid b, ris_rigid a)
     ris_rigid result = a;
     for (int r = 0; r < 3; ++r) {
         for (int c = 0; c < 3; ++c) {
-            result.rotation[3 * r + c] = (b.rotation[3 * r] * a.rotation[c] + b.rotation[3 * r + 1] * a.rotation[3 + c]) +
-                                         b.rotation[3 * r + 2] * a.rotation[6 + c];
+            result.rotation[3 * r + c] =
+                (b.rotation[3 * r] * a.rotation[c] + b.rotation[3 * r + 1] * a.rotation[3 + c]) +
+                b.rotation[3 * r + 2] * a.rotation[6 + c];
         }
     }
     result.identity = a.identity && b.identity;
@@ -97,8 +110,10 @@ static void pose_jaw(ris_rig *rig, const float *beside)
 {
     const ris_jaw_def *def = &rig->model->head->jaw;
     const float forward = beside[JAW_FORWARD];
-    rig->jaw = ris__rigid_turn(def->point, def->axis, (double)beside[JAW_OPEN] * (double)def->open_deg * PI / 180.0);
-    rig->jaw.shift = v3(def->side_mm * beside[JAW_SIDE], 0.0f, forward * (forward < 0.0f ? def->back_mm : def->forward_mm));
+    rig->jaw =
+        ris__rigid_turn(def->point, def->axis, (double)beside[JAW_OPEN] * (double)def->open_deg * PI / 180.0);
+    rig->jaw.shift = v3(def->side_mm * beside[JAW_SIDE], 0.0f,
+                        forward * (forward < 0.0f ? def->back_mm : def->forward_mm));
     rig->jaw.identity = beside[JAW_OPEN] == 0.0f && beside[JAW_SIDE] == 0.0f && forward == 0.0f;
 }
 
@@ -107,13 +122,17 @@ void ris__jaw_pose(ris_rig *rig, const float *pose)
     const ris_model *model = rig->model;
     const float *beside = pose + rig->first_beside;
     pose_jaw(rig, beside);
-    rig->eye[0] = yaw_pitch_roll(part_pivot(model->head, RIS_BONE_EYE_L), beside[EYE_YAW_L], beside[EYE_PITCH_L], 0.0f);
-    rig->eye[1] = yaw_pitch_roll(part_pivot(model->head, RIS_BONE_EYE_R), beside[EYE_YAW_R], beside[EYE_PITCH_R], 0.0f);
+    rig->eye[0] =
+        yaw_pitch_roll(part_pivot(model->head, RIS_BONE_EYE_L), beside[EYE_YAW_L], beside[EYE_PITCH_L], 0.0f);
+    rig->eye[1] =
+        yaw_pitch_roll(part_pivot(model->head, RIS_BONE_EYE_R), beside[EYE_YAW_R], beside[EYE_PITCH_R], 0.0f);
     rig->head = yaw_pitch_roll(v3(0, 0, 0), beside[HEAD_YAW], beside[HEAD_PITCH], beside[HEAD_ROLL]);
     rig->head.shift = v3(beside[HEAD_X], beside[HEAD_Y], beside[HEAD_Z]);
-    rig->head.identity = rig->head.identity && beside[HEAD_X] == 0.0f && beside[HEAD_Y] == 0.0f && beside[HEAD_Z] == 0.0f;
+    rig->head.identity =
+        rig->head.identity && beside[HEAD_X] == 0.0f && beside[HEAD_Y] == 0.0f && beside[HEAD_Z] == 0.0f;
 
-    /* the default tissue moves muscles in the closed-jaw space and turns their targets with the node's own jaw weight */
+    /* the default tissue moves muscles in the closed-jaw space and turns their targets with the node's own
+     * jaw weight */
     memcpy(rig->p, model->fiber_point, model->fiber_point_count * sizeof *rig->p);
     if (!(model->push.flags & RIS_TISSUE_FLAG_KAEHLER)) {
         return;

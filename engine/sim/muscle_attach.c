@@ -1,8 +1,10 @@
-/* muscle_attach, last host stage: KA-37 attached points follow their segments; KA-14, KA-15 anchors of the tick.
+/* muscle_attach, last host stage: KA-37 attached points follow their segments; KA-14, KA-15 anchors of the
+ * tick.
  *
  * Default tissue (spec/prototype.md 5), node at rest X, bindings (muscle, weight w, activity s in 0..1):
  *     P      = X + sum w s delta / max(1, sum w s)          delta blended over the segments of the binding
- *              a pulled corner of the mouth adds delta = its displacement with weight w s t^p, t = 1 at the corner, 0 at midline
+ *              a pulled corner of the mouth adds delta = its displacement with weight w s t^p,
+ *              t = 1 at the corner, 0 at the midline
  *     target = P + jaw_weight (J(P) - P),  normal = unit(n + jaw_weight (J n - n))
  * kaehler tissue: anchor A follows its one segment or its bone, mirror M moves by the same displacement.
  * The change of the target since the last tick is the over-relaxation of anchor_shift. */

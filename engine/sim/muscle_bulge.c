@@ -37,7 +37,8 @@ void ris__muscle_bulge(ris_rig *rig)
             const float rho = length_of(rig->q + fiber->first_point, muscle->point_count) /
                               length_of(rig->p + fiber->first_point, muscle->point_count);
             for (uint32_t s = 0; s + 1 < muscle->point_count; ++s) {
-                rig->bulge[fiber->first_segment + s] = ris__bulge_factor(muscle->kind, rho, s, muscle->point_count - 1);
+                rig->bulge[fiber->first_segment + s] =
+                    ris__bulge_factor(muscle->kind, rho, s, muscle->point_count - 1);
             }
         }
     }

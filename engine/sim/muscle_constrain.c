@@ -1,7 +1,8 @@
-/* muscle_constrain: KA-33 geometric resolution of the constraint groups, literal in the kaehler tissue. In the default tissue the
- * groups are the corners of the mouth: the corner's displacement is the weighted mean of its members', which follow it along their
- * whole length, and it drags the lips along the orbicularis oris (group displacement x t^p) in place of the straightening of KA-35,
- * which pulls lips flat. */
+/* muscle_constrain: KA-33 geometric resolution of the constraint groups, literal in the kaehler tissue. In
+ * the default tissue the groups are the corners of the mouth: the corner's displacement is the weighted
+ * mean of its members', which follow it along their whole length, and it drags the lips along the
+ * orbicularis oris (group displacement x t^p) in place of the straightening of KA-35, which pulls lips
+ * flat. */
 #include "sim/rig.h"
 
 #include "model/model_impl.h"
@@ -11,8 +12,8 @@
 
 #define ACTIVITY_FULL 0.1f
 
-ris_vec3 ris__resolve_group(uint32_t n, const float *contraction, const float *rest_distance_mm, const ris_vec3 *rest,
-                            float lambda, ris_vec3 *point)
+ris_vec3 ris__resolve_group(uint32_t n, const float *contraction, const float *rest_distance_mm,
+                            const ris_vec3 *rest, float lambda, ris_vec3 *point)
 {
     float sum = 0.0f;
     ris_vec3 centroid = {0}, rest_centroid = {0};
@@ -93,14 +94,15 @@ static void resolve_literal(ris_rig *rig, const ris_group *group)
     if (!acting) {
         return; /* nothing has moved: leave the bits alone */
     }
-    ris__resolve_group(group->point_count, contraction, distance, rest, model->head->tissue.constraint_lambda, after);
+    ris__resolve_group(group->point_count, contraction, distance, rest, model->head->tissue.constraint_lambda,
+                       after);
     for (uint32_t k = 0; k < group->point_count; ++k) {
         displace_point(rig, &member[k], v3_sub(after[k], before[k]));
     }
 }
 
-/* Default tissue: the corner moves by the mean displacement of its members, weighted with 1 + lambda x activation (activation,
- * not contraction, because contractions end at max_shortening, far below 1). */
+/* Default tissue: the corner moves by the mean displacement of its members, weighted with 1 + lambda x
+ * activation (activation, not contraction, because contractions end at max_shortening, far below 1). */
 static void resolve_corner(ris_rig *rig, const ris_group *group)
 {
     const ris_model *model = rig->model;

@@ -36,7 +36,8 @@ void ris__contract_linear(const ris_vec3 *p, uint32_t n, float c, ris_vec3 *q)
     }
 }
 
-ris_vec3 ris__contract_sphincter(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, float a, uint32_t j, uint32_t f, float c)
+ris_vec3 ris__contract_sphincter(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, float a, uint32_t j, uint32_t f,
+                                 float c)
 {
     const ris_vec3 axis = v3_sub(a1, a0), moving = v3_mad(a0, a, axis);
     const float length2 = v3_dot(axis, axis);
@@ -72,7 +73,9 @@ void ris__muscle_contract(ris_rig *rig, const float *pose)
             }
             for (uint32_t i = 0; i < muscle->point_count; ++i) {
                 const ris_vec3 p = rig->p[first + i];
-                rig->q[first + i] = c > 0.0f ? ris__contract_sphincter(p, axis[0], axis[1], 1.0f, f, muscle->fiber_count, c) : p;
+                rig->q[first + i] =
+                    c > 0.0f ? ris__contract_sphincter(p, axis[0], axis[1], 1.0f, f, muscle->fiber_count, c)
+                             : p;
             }
         }
     }

@@ -1,5 +1,6 @@
-/* muscle_relax: KA-35, sections of a lengthened fibre between constrained points are straightened. Literal in the kaehler tissue;
- * in the default tissue muscle_constrain has spread the pull along the fibre already, and lips must not be straightened. */
+/* muscle_relax: KA-35, sections of a lengthened fibre between constrained points are straightened. Literal
+ * in the kaehler tissue; in the default tissue muscle_constrain has spread the pull along the fibre
+ * already, and lips must not be straightened. */
 #include "sim/rig.h"
 
 #include "model/vec3.h"
@@ -48,7 +49,8 @@ void ris__muscle_relax(ris_rig *rig)
         const uint32_t n = model->muscle[m].point_count;
         for (uint32_t f = 0; f < model->muscle[m].fiber_count; ++f) {
             const uint32_t first = model->fiber[model->muscle[m].first_fiber + f].first_point;
-            const float w = ris__relax_weight(closed_length(rig->q + first, n), closed_length(rig->p + first, n));
+            const float w =
+                ris__relax_weight(closed_length(rig->q + first, n), closed_length(rig->p + first, n));
             uint32_t u = 0;
             for (uint32_t v = 1; v < n && w > 0.0f; ++v) {
                 if (rig->constrained[first + v] || v + 1 == n) {

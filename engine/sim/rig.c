@@ -29,7 +29,8 @@ ris_result ris__rig_init(ris_rig *rig, const ris_model *model, ris_error *err)
         {&rig->delta, model->node_count, sizeof *rig->delta},
     };
     for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; ++k) {
-        ris_result result = ris__model_alloc(arrays[k].field, arrays[k].count, arrays[k].size, "the muscle stages", err);
+        ris_result result =
+            ris__model_alloc(arrays[k].field, arrays[k].count, arrays[k].size, "the muscle stages", err);
         if (result != RIS_OK) {
             ris__rig_finish(rig);
             return result;
@@ -38,7 +39,8 @@ ris_result ris__rig_init(ris_rig *rig, const ris_model *model, ris_error *err)
     for (uint32_t g = 0; g < model->group_point_count; ++g) {
         const ris_muscle *muscle = &model->muscle[model->group_point[g].muscle];
         for (uint32_t f = 0; f < muscle->fiber_count; ++f) {
-            rig->constrained[model->fiber[muscle->first_fiber + f].first_point + model->group_point[g].point] = true;
+            rig->constrained[model->fiber[muscle->first_fiber + f].first_point +
+                             model->group_point[g].point] = true;
         }
     }
     ris__rig_reset(rig);

@@ -1,5 +1,6 @@
-/* The host half of a tick (KA-30): pose -> jaw and bones -> muscles -> anchors. One ris_rig per simulation; each stage is a file
- * with the stage's name. The stages are called in the order of their declarations. */
+/* The host half of a tick (KA-30): pose -> jaw and bones -> muscles -> anchors. One ris_rig per
+ * simulation; each stage is a file with the stage's name. The stages are called in the order of their
+ * declarations. */
 #pragma once
 
 #include "sim/sim_impl.h"
@@ -30,14 +31,14 @@ typedef struct ris_rig {
     float *activity;    /* min(1, activation / 0.1) per muscle */
     ris_vec3 *q;        /* deformed control points (fiber_point_count) */
     /* muscle_constrain */
-    ris_drag *drag;     /* (2 x muscle_count): first and last end of sphincters */
-    bool *constrained;  /* per fibre point (fiber_point_count) */
+    ris_drag *drag;    /* (2 x muscle_count): first and last end of sphincters */
+    bool *constrained; /* per fibre point (fiber_point_count) */
     /* muscle_bulge */
     float *bulge; /* height scale per segment (segment_count) */
     /* muscle_attach */
-    ris_vec3 *target;         /* of the previous tick (node_count) */
-    ris_anchor_point *point;  /* (node_count) */
-    ris_vec4 *delta;          /* (node_count) */
+    ris_vec3 *target;        /* of the previous tick (node_count) */
+    ris_anchor_point *point; /* (node_count) */
+    ris_vec4 *delta;         /* (node_count) */
 } ris_rig;
 
 ris_result ris__rig_init(ris_rig *rig, const ris_model *model, ris_error *err);
@@ -62,11 +63,12 @@ ris_vec3 ris__rigid_rotate(const ris_rigid *rigid, ris_vec3 v);
 /* KA-31. n points of a fibre at rest, contraction c, result q (n). */
 void ris__contract_linear(const ris_vec3 *p, uint32_t n, float c, ris_vec3 *q);
 /* KA-32. Point p of fibre j of f (0 outermost), axis a0-a1, position a on it. */
-ris_vec3 ris__contract_sphincter(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, float a, uint32_t j, uint32_t f, float c);
-/* KA-33. Moves n points to their rest distance from the centroid weighted with 1 + lambda c; rest gives the fallback direction.
- * Returns the centroid. */
-ris_vec3 ris__resolve_group(uint32_t n, const float *contraction, const float *rest_distance_mm, const ris_vec3 *rest,
-                            float lambda, ris_vec3 *point);
+ris_vec3 ris__contract_sphincter(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, float a, uint32_t j, uint32_t f,
+                                 float c);
+/* KA-33. Moves n points to their rest distance from the centroid weighted with 1 + lambda c; rest gives
+ * the fallback direction. Returns the centroid. */
+ris_vec3 ris__resolve_group(uint32_t n, const float *contraction, const float *rest_distance_mm,
+                            const ris_vec3 *rest, float lambda, ris_vec3 *point);
 /* KA-35. Weight of straightening for closed-loop lengths now and at rest. */
 float ris__relax_weight(float length_mm, float rest_length_mm);
 /* KA-36. Height scale of segment i of count for length ratio rho. */

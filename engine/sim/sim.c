@@ -1,5 +1,5 @@
-/* Front of every simulation: argument checks, the order of the host stages (KA-30), divergence, settling, hash. The device half
- * of the frame is the backend's `frame` (sim/cpu/cpu_sim.c, sim/vk/vk_sim.c). */
+/* Front of every simulation: argument checks, the order of the host stages (KA-30), divergence, settling,
+ * hash. The device half of the frame is the backend's `frame` (sim/cpu/cpu_sim.c, sim/vk/vk_sim.c). */
 #include "sim/rig.h"
 
 #include "base/clock.h"
@@ -28,18 +28,20 @@ struct ris_sim {
 
 const char *ris_stage_name(ris_stage stage)
 {
-    static const char *const names[RIS_STAGE_COUNT] = {"anchor_shift", "bend", "spring_force", "verlet", "normal"};
+    static const char *const names[RIS_STAGE_COUNT] = {"anchor_shift", "bend", "spring_force", "verlet",
+                                                       "normal"};
     return (unsigned)stage < RIS_STAGE_COUNT ? names[stage] : "?";
 }
 
 const char *ris_state_name(ris_state state)
 {
-    static const char *const names[RIS_STATE_COUNT] = {"position", "velocity_half", "velocity_prev", "force", "bend", "normal"};
+    static const char *const names[RIS_STATE_COUNT] = {"position", "velocity_half", "velocity_prev",
+                                                       "force",    "bend",          "normal"};
     return (unsigned)state < RIS_STATE_COUNT ? names[state] : "?";
 }
 
-ris_result ris__sim_create(const ris_model *model, const ris_sim_impl *impl, void *self, const char *backend_name, ris_sim **out,
-                           ris_error *err)
+ris_result ris__sim_create(const ris_model *model, const ris_sim_impl *impl, void *self,
+                           const char *backend_name, ris_sim **out, ris_error *err)
 {
     *out = NULL;
     ris_sim *sim = NULL;
@@ -54,7 +56,8 @@ ris_result ris__sim_create(const ris_model *model, const ris_sim_impl *impl, voi
     snprintf(sim->backend, sizeof sim->backend, "%s", backend_name);
     result = ris__rig_init(&sim->rig, model, err);
     if (result == RIS_OK) {
-        result = ris__model_alloc(&sim->scratch, model->node_count, sizeof *sim->scratch, "the simulation", err);
+        result =
+            ris__model_alloc(&sim->scratch, model->node_count, sizeof *sim->scratch, "the simulation", err);
     }
     if (result == RIS_OK) {
         result = ris_sim_reset(sim, err);
@@ -86,7 +89,8 @@ void *ris__sim_self(ris_sim *sim, const ris_sim_impl *impl)
 ris_result ris_sim_reset(ris_sim *sim, ris_error *err)
 {
     const ris_model *model = sim->model;
-    static const ris_state zeroed[] = {RIS_STATE_VELOCITY_HALF, RIS_STATE_VELOCITY_PREV, RIS_STATE_FORCE, RIS_STATE_BEND};
+    static const ris_state zeroed[] = {RIS_STATE_VELOCITY_HALF, RIS_STATE_VELOCITY_PREV, RIS_STATE_FORCE,
+                                       RIS_STATE_BEND};
     ris__rig_reset(&sim->rig);
     ris_result result = sim->impl->write(sim->self, RIS_STATE_POSITION, model->rest_position, err);
     if (result == RIS_OK) {
@@ -114,8 +118,8 @@ ris_result ris__sim_pose(ris_sim *sim, const float *pose, ris_anchor_frame *out,
 {
     for (uint32_t k = 0; k < sim->model->channel_count; ++k) {
         if (!isfinite(pose[k])) {
-            return ris_fail(err, RIS_ERROR_USAGE, "channel %s of the pose is %g, expected a number", sim->model->channel[k].name,
-                            (double)pose[k]);
+            return ris_fail(err, RIS_ERROR_USAGE, "channel %s of the pose is %g, expected a number",
+                            sim->model->channel[k].name, (double)pose[k]);
         }
     }
     run_muscle_stages(sim, pose);
@@ -143,7 +147,8 @@ static uint32_t first_wild(const ris_vec4 *value, uint32_t count, float limit)
     return count;
 }
 
-/* Names the first stage whose result at the wild vertex is no number; a finite but huge position is the integrator's. */
+/* Names the first stage whose result at the wild vertex is no number; a finite but huge position is the
+ * integrator's. */
 static ris_result report_divergence(ris_sim *sim, uint32_t vertex, ris_error *err)
 {
     const char *stage = ris_stage_name(RIS_STAGE_VERLET);
@@ -212,8 +217,9 @@ ris_result ris_sim_settle(ris_sim *sim, const float *pose, double *out_time_s, r
             return RIS_OK;
         }
     }
-    return ris_fail(err, RIS_ERROR_FAILED, "the pose did not come to rest in %d s: vertex %u still moves at %.3f mm/s", SETTLE_TICKS / 60,
-                    worst, (double)worst_speed);
+    return ris_fail(err, RIS_ERROR_FAILED,
+                    "the pose did not come to rest in %d s: vertex %u still moves at %.3f mm/s",
+                    SETTLE_TICKS / 60, worst, (double)worst_speed);
 }
 
 ris_result ris_sim_read(ris_sim *sim, ris_state state, ris_vec4 *out, ris_error *err)

@@ -1,5 +1,6 @@
-/* The CPU reference gives the same bits on every compiler and optimisation level: golden hashes of a code-built scene (no file, no
- * libm but sqrtf), repeated runs, save and restore, one tick of 8 substeps = 8 ticks of one. Built twice: as is, and with -O0. */
+/* The CPU reference gives the same bits on every compiler and optimisation level: golden hashes of a code-
+ * built scene (no file, no libm but sqrtf), repeated runs, save and restore, one tick of 8 substeps = 8
+ * ticks of one. Built twice: as is, and with -O0. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

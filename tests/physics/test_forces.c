@@ -1,5 +1,5 @@
-/* Forces against hand-computed numbers: KA-12 biphasic springs, KA-14/15 anchor pair, KA-16 sums, the default tissue's anchor and
- * bending, KA-20 normals, KA-37 anchor_shift. */
+/* Forces against hand-computed numbers: KA-12 biphasic springs, KA-14/15 anchor pair, KA-16 sums, the
+ * default tissue's anchor and bending, KA-20 normals, KA-37 anchor_shift. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -85,8 +85,14 @@ static void biphasic_spring(void **state)
     (void)state;
     const ris_vec3 p[] = {{0, 0, 0}, {1, 0, 0}};
     const ris_scene_spring spring = {0, 1, 1.0f, 0.86602540f};
-    ris_scene_net_def def = {.node_count = 2, .spring_count = 1, .position = p, .spring = &spring, .mass_g = 1, .tissue = law(false, 1)};
-    static const float literal[][2] = {{1.0f, 0}, {1.2f, 17.3205f}, {1.49f, 42.435f}, {1.5f, 433.013f}, {0.8f, -17.3205f}, {0, 0}};
+    ris_scene_net_def def = {.node_count = 2,
+                             .spring_count = 1,
+                             .position = p,
+                             .spring = &spring,
+                             .mass_g = 1,
+                             .tissue = law(false, 1)};
+    static const float literal[][2] = {{1.0f, 0},        {1.2f, 17.3205f},  {1.49f, 42.435f},
+                                       {1.5f, 433.013f}, {0.8f, -17.3205f}, {0, 0}};
     world w = open_net(&def);
     for (size_t k = 0; k < sizeof literal / sizeof literal[0]; ++k) {
         w.x[1].x = literal[k][0];
@@ -98,7 +104,8 @@ static void biphasic_spring(void **state)
     close_world(&w);
 
     def.tissue = law(true, 0.2f); /* continuous above the switch, soft below rest */
-    static const float smooth[][2] = {{1.2f, 17.3205f}, {1.5f, 43.3013f}, {1.6f, 129.9038f}, {0.8f, -3.4641f}};
+    static const float smooth[][2] = {
+        {1.2f, 17.3205f}, {1.5f, 43.3013f}, {1.6f, 129.9038f}, {0.8f, -3.4641f}};
     w = open_net(&def);
     for (size_t k = 0; k < sizeof smooth / sizeof smooth[0]; ++k) {
         w.x[1].x = smooth[k][0];
@@ -107,13 +114,19 @@ static void biphasic_spring(void **state)
     close_world(&w);
 }
 
-/* KA-16: p = 0, q = 2, r = 1, k = 10 gives 10 and -10; internal forces and torques of a random net add up to nothing. */
+/* KA-16: p = 0, q = 2, r = 1, k = 10 gives 10 and -10; internal forces and torques of a random net add up
+ * to nothing. */
 static void internal_forces_cancel(void **state)
 {
     (void)state;
     const ris_vec3 p[] = {{0, 0, 0}, {2, 0, 0}};
     const ris_scene_spring spring = {0, 1, 1.0f, 0.1f};
-    ris_scene_net_def def = {.node_count = 2, .spring_count = 1, .position = p, .spring = &spring, .mass_g = 1, .tissue = law(false, 1)};
+    ris_scene_net_def def = {.node_count = 2,
+                             .spring_count = 1,
+                             .position = p,
+                             .spring = &spring,
+                             .mass_g = 1,
+                             .tissue = law(false, 1)};
     def.tissue.modulus[1] = def.tissue.modulus[0];
     world w = open_net(&def);
     assert_near(forces(&w)[0].x, 10, 1e-5);
@@ -133,7 +146,12 @@ static void internal_forces_cancel(void **state)
         const uint32_t a = (seed >> 8) % N, b = (a + 1 + (seed >> 16) % (N - 1)) % N;
         springs[s] = (ris_scene_spring){a, b, 1.0f + (float)(seed >> 24) / 32.0f, 0.5f};
     }
-    def = (ris_scene_net_def){.node_count = N, .spring_count = S, .position = q, .spring = springs, .mass_g = 1, .tissue = law(true, 0.2f)};
+    def = (ris_scene_net_def){.node_count = N,
+                              .spring_count = S,
+                              .position = q,
+                              .spring = springs,
+                              .mass_g = 1,
+                              .tissue = law(true, 0.2f)};
     w = open_net(&def);
     const ris_vec4 *f = forces(&w);
     ris_vec3 sum = {0}, torque = {0};
@@ -154,7 +172,8 @@ static void anchor_pair(void **state)
     (void)state;
     const ris_vec3 p[] = {{0, 0, 0}};
     ris_anchor_param anchor = {.normal = 30, .rest_mm = 5};
-    ris_scene_net_def def = {.node_count = 1, .position = p, .anchor = &anchor, .mass_g = 1, .tissue = law(false, 1)};
+    ris_scene_net_def def = {
+        .node_count = 1, .position = p, .anchor = &anchor, .mass_g = 1, .tissue = law(false, 1)};
     def.tissue.model = RIS_TISSUE_KAEHLER;
     static const float cases[][4] = {{30, 1, 60, 1.1652f}, {10, 1, 20, 0.3884f}, {30, 2, 120, 8.583f}};
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; ++k) {
@@ -177,7 +196,8 @@ static void normal_and_tangential_anchor(void **state)
     (void)state;
     const ris_vec3 p[] = {{1, 2, 3}};
     const ris_anchor_param anchor = {.normal = 60, .tangential = 45};
-    ris_scene_net_def def = {.node_count = 1, .position = p, .anchor = &anchor, .mass_g = 1, .tissue = law(true, 1)};
+    ris_scene_net_def def = {
+        .node_count = 1, .position = p, .anchor = &anchor, .mass_g = 1, .tissue = law(true, 1)};
     world w = open_net(&def);
     w.x[0] = (ris_vec4){1 + 2, 2 - 1, 3 + 0.5f, 1};
     const ris_vec4 f = forces(&w)[0];
@@ -187,7 +207,8 @@ static void normal_and_tangential_anchor(void **state)
     close_world(&w);
 }
 
-/* Bending: the force is minus the gradient of sum k/2 |L(x - x0)|^2 over the moving nodes, by central differences. */
+/* Bending: the force is minus the gradient of sum k/2 |L(x - x0)|^2 over the moving nodes, by central
+ * differences. */
 static void bending_is_the_gradient(void **state)
 {
     (void)state;
@@ -251,7 +272,8 @@ static void normals_of_a_sphere(void **state)
         if (w.x[i].w > 0.0f) {
             assert_true(v3_dot(v4_xyz(w.value[i]), v3_unit_or(v4_xyz(w.x[i]), v3(0, 0, 1))) > 0.99985f);
         }
-        w.x[i] = (ris_vec4){-model->rest_position[i].y, model->rest_position[i].x, model->rest_position[i].z, w.x[i].w};
+        w.x[i] = (ris_vec4){-model->rest_position[i].y, model->rest_position[i].x, model->rest_position[i].z,
+                            w.x[i].w};
     }
     need(ris_sim_write(w.sim, RIS_STATE_POSITION, w.x, &err));
     need(ris__sim_stage(w.sim, RIS_STAGE_NORMAL, NULL, &err));
@@ -269,7 +291,8 @@ static void anchor_shift_moves_free_nodes(void **state)
     (void)state;
     const ris_vec3 p[] = {{0, 0, 0}, {5, 0, 0}};
     const bool pinned[] = {false, true};
-    ris_scene_net_def def = {.node_count = 2, .position = p, .pinned = pinned, .mass_g = 2, .tissue = law(true, 1)};
+    ris_scene_net_def def = {
+        .node_count = 2, .position = p, .pinned = pinned, .mass_g = 2, .tissue = law(true, 1)};
     world w = open_net(&def);
     const ris_anchor_point points[2] = {{{0, 0, 0, 0}, {0, 0, 1, 0}}, {{5, 0, 0, 0}, {0, 0, 1, 0}}};
     const ris_vec4 delta[2] = {{1, 2, 3, 0}, {1, 2, 3, 0}};
@@ -286,9 +309,12 @@ static void anchor_shift_moves_free_nodes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(biphasic_spring),          cmocka_unit_test(internal_forces_cancel),
-        cmocka_unit_test(anchor_pair),              cmocka_unit_test(normal_and_tangential_anchor),
-        cmocka_unit_test(bending_is_the_gradient),  cmocka_unit_test(normals_of_a_sphere),
+        cmocka_unit_test(biphasic_spring),
+        cmocka_unit_test(internal_forces_cancel),
+        cmocka_unit_test(anchor_pair),
+        cmocka_unit_test(normal_and_tangential_anchor),
+        cmocka_unit_test(bending_is_the_gradient),
+        cmocka_unit_test(normals_of_a_sphere),
         cmocka_unit_test(anchor_shift_moves_free_nodes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,5 +1,5 @@
-/* Motion: KA-17 leapfrog (not KA-18 Euler), stability and time constants (spec 2.9), and what any mechanics must keep: rest, period,
- * momentum, energy, mirror symmetry, static nodes (KA-09). */
+/* Motion: KA-17 leapfrog (not KA-18 Euler), stability and time constants (spec 2.9), and what any
+ * mechanics must keep: rest, period, momentum, energy, mirror symmetry, static nodes (KA-09). */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -30,7 +30,11 @@ static ris_sim *oscillator(float k, float mass_g, float damping_per_s, float dt_
 {
     const ris_vec3 p[] = {{0, 0, 0}};
     const ris_anchor_param anchor = {.normal = k, .tangential = k};
-    ris_scene_net_def def = {.node_count = 1, .position = p, .anchor = &anchor, .mass_g = mass_g, .damping_per_s = damping_per_s,
+    ris_scene_net_def def = {.node_count = 1,
+                             .position = p,
+                             .anchor = &anchor,
+                             .mass_g = mass_g,
+                             .damping_per_s = damping_per_s,
                              .tissue = ris_default_tissue()};
     def.tissue.substeps = 1;
     ris_sim *sim = NULL;
@@ -79,7 +83,8 @@ static void leapfrog_sequences(void **state) /* KA-17 */
     }
 }
 
-/* Spec 2.9: (omega dt)^2 + 4 gamma dt / m = 3.96 stays bounded for 10^5 steps, 4.04 diverges and is reported. */
+/* Spec 2.9: (omega dt)^2 + 4 gamma dt / m = 3.96 stays bounded for 10^5 steps, 4.04 diverges and is
+ * reported. */
 static void stability_boundary(void **state)
 {
     (void)state;
@@ -102,14 +107,19 @@ static void stability_boundary(void **state)
     }
 }
 
-/* Spec 5: the thesis's bone pair displaced 1 mm, free for 0.5 s; the Euler-type start is first order, a centred one second order. */
+/* Spec 5: the thesis's bone pair displaced 1 mm, free for 0.5 s; the Euler-type start is first order, a
+ * centred one second order. */
 static void time_constant_and_order(void **state)
 {
     (void)state;
     static const float started[] = {0.36610f, 0.36703f, 0.36750f}, centred[] = {0.36844f, 0.36808f, 0.36800f};
     const ris_vec3 p[] = {{0, 0, 0}};
     const ris_anchor_param anchor = {.normal = 30, .rest_mm = 5};
-    ris_scene_net_def def = {.node_count = 1, .position = p, .anchor = &anchor, .mass_g = 0.31f, .damping_per_s = 30.0f / 0.31f,
+    ris_scene_net_def def = {.node_count = 1,
+                             .position = p,
+                             .anchor = &anchor,
+                             .mass_g = 0.31f,
+                             .damping_per_s = 30.0f / 0.31f,
                              .tissue = ris_default_tissue()};
     def.tissue.model = RIS_TISSUE_KAEHLER;
     def.tissue.substeps = 1;
@@ -122,7 +132,8 @@ static void time_constant_and_order(void **state)
             const float dt = 0.005f / (float)(1 << half), a0 = -60.0f / 0.31f;
             model->push.dt_s = dt;
             need(ris_sim_create_cpu(model, &sim, &err));
-            ris_vec4 x = {0, 0, 1, model->rest_position[0].w}, v = {0, 0, -0.5f * dt * a0, 0}, u = {0, 0, -1.5f * dt * a0, 0};
+            ris_vec4 x = {0, 0, 1, model->rest_position[0].w}, v = {0, 0, -0.5f * dt * a0, 0},
+                     u = {0, 0, -1.5f * dt * a0, 0};
             need(ris_sim_write(sim, RIS_STATE_POSITION, &x, &err));
             if (k) {
                 need(ris_sim_write(sim, RIS_STATE_VELOCITY_HALF, &v, &err));
@@ -145,7 +156,12 @@ static void two_mass_period(void **state)
     (void)state;
     const ris_vec3 p[] = {{0, 0, 0}, {10, 0, 0}};
     const ris_scene_spring spring = {0, 1, 10.0f, 1.0f};
-    ris_scene_net_def def = {.node_count = 2, .spring_count = 1, .position = p, .spring = &spring, .mass_g = 2, .tissue = ris_default_tissue()};
+    ris_scene_net_def def = {.node_count = 2,
+                             .spring_count = 1,
+                             .position = p,
+                             .spring = &spring,
+                             .mass_g = 2,
+                             .tissue = ris_default_tissue()};
     def.tissue.substeps = 1;
     def.tissue.compression = 1;
     ris_model *model = NULL;
@@ -202,8 +218,13 @@ static ris_sim *random_net(float damping_per_s, ris_model **out_model, ris_vec4 
         }
         velocity[i].w = 0.0f;
     }
-    ris_scene_net_def def = {.node_count = N, .spring_count = S, .position = q, .spring = springs, .mass_g = 0.5f,
-                             .damping_per_s = damping_per_s, .tissue = ris_default_tissue()};
+    ris_scene_net_def def = {.node_count = N,
+                             .spring_count = S,
+                             .position = q,
+                             .spring = springs,
+                             .mass_g = 0.5f,
+                             .damping_per_s = damping_per_s,
+                             .tissue = ris_default_tissue()};
     def.tissue.compression = 1;
     def.tissue.modulus[1] = def.tissue.modulus[0];
     ris_sim *sim = NULL;
@@ -249,8 +270,10 @@ static double energy_of(ris_sim *sim)
         energy += 0.5 * 0.5 * (double)v3_dot(v4_xyz(v[i]), v4_xyz(v[i]));
         for (uint32_t h = model->spring_start[i]; h < model->spring_start[i + 1]; ++h) {
             const ris_half_spring *half = &model->half_spring[h];
-            const double stretch = (double)(v3_distance(v4_xyz(x[i]), v4_xyz(x[half->other])) - half->rest_mm);
-            energy += 0.25 * 100.0 * (double)half->area_ratio * stretch * stretch; /* each spring is seen twice */
+            const double stretch =
+                (double)(v3_distance(v4_xyz(x[i]), v4_xyz(x[half->other])) - half->rest_mm);
+            energy +=
+                0.25 * 100.0 * (double)half->area_ratio * stretch * stretch; /* each spring is seen twice */
         }
     }
     return energy;
@@ -313,7 +336,8 @@ static void rest_is_a_fixed_point(void **state)
         need(ris_sim_read(sim, RIS_STATE_POSITION, x, &err));
         for (uint32_t i = 0; i < model->node_count; ++i) {
             /* the mirror of the thesis's pair is rounded to a float, so its rest is exact to that */
-            assert_true(v3_distance(v4_xyz(x[i]), v4_xyz(model->rest_position[i])) <= (literal ? 1e-5f : 0.0f));
+            assert_true(v3_distance(v4_xyz(x[i]), v4_xyz(model->rest_position[i])) <=
+                        (literal ? 1e-5f : 0.0f));
         }
         pose[0] = pose[2] = pose[5] = 1.0f;
         pose[ris_model_channel(model, "jaw.open")] = 0.6f;
@@ -370,8 +394,11 @@ static void mirrored_rig_moves_mirrored(void **state)
     ris_model *model = NULL;
     ris_sim *sim = scene(RIS_TISSUE_RISORIUS, &model);
     ris_vec4 *a = malloc(model->node_count * sizeof *a), *b = malloc(model->node_count * sizeof *b);
-    static const char *const left[] = {"zygomaticus_major.L", "frontalis_inner.L"}, *const right[] = {"zygomaticus_major.R", "frontalis_inner.R"};
-    static const char *const both[] = {"zygomaticus_major.L", "zygomaticus_major.R", "jaw.open", "orbicularis_oris_superior"};
+    static const char *const left[] = {"zygomaticus_major.L", "frontalis_inner.L"}, *const right[] = {
+                                                                                        "zygomaticus_major.R",
+                                                                                        "frontalis_inner.R"};
+    static const char *const both[] = {"zygomaticus_major.L", "zygomaticus_major.R", "jaw.open",
+                                       "orbicularis_oris_superior"};
     ticks(sim, left, 2, a);
     ticks(sim, right, 2, b);
     assert_true(mirror_gap(a, b) < 0.01f);
@@ -384,7 +411,8 @@ static void mirrored_rig_moves_mirrored(void **state)
     ris_model_destroy(model);
 }
 
-/* A held pose comes to rest, says when, and stays there; one that cannot (no damping) is an error that names the vertex. */
+/* A held pose comes to rest, says when, and stays there; one that cannot (no damping) is an error that
+ * names the vertex. */
 static void poses_settle(void **state)
 {
     (void)state;
@@ -411,7 +439,8 @@ static void poses_settle(void **state)
     ris_model_destroy(model);
 }
 
-/* Halving dt brings the tissue's path to the limit at first order or better: the distance to a fine run falls by about half. */
+/* Halving dt brings the tissue's path to the limit at first order or better: the distance to a fine run
+ * falls by about half. */
 static void halved_steps_converge(void **state)
 {
     (void)state;
@@ -453,9 +482,15 @@ static void halved_steps_converge(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(leapfrog_sequences),    cmocka_unit_test(stability_boundary),   cmocka_unit_test(time_constant_and_order),
-        cmocka_unit_test(two_mass_period),       cmocka_unit_test(momentum_is_kept),     cmocka_unit_test(damping_takes_energy),
-        cmocka_unit_test(rest_is_a_fixed_point), cmocka_unit_test(mirrored_rig_moves_mirrored), cmocka_unit_test(poses_settle),
+        cmocka_unit_test(leapfrog_sequences),
+        cmocka_unit_test(stability_boundary),
+        cmocka_unit_test(time_constant_and_order),
+        cmocka_unit_test(two_mass_period),
+        cmocka_unit_test(momentum_is_kept),
+        cmocka_unit_test(damping_takes_energy),
+        cmocka_unit_test(rest_is_a_fixed_point),
+        cmocka_unit_test(mirrored_rig_moves_mirrored),
+        cmocka_unit_test(poses_settle),
         cmocka_unit_test(halved_steps_converge),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

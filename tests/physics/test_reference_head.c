@@ -1,5 +1,5 @@
-/* The reference head: what must hold of its motion whatever the calibration. Rest, settling, mirror symmetry, who moves what, no
- * torn or folded skin, and grids that matter. */
+/* The reference head: what must hold of its motion whatever the calibration. Rest, settling, mirror
+ * symmetry, who moves what, no torn or folded skin, and grids that matter. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -43,7 +43,8 @@ static void find_mirrors(void)
 static int open_head(void **state)
 {
     (void)state;
-    if (ris_model_load(RIS_SOURCE_DIR "/assets/human", &model, &err) != RIS_OK || ris_sim_create_cpu(model, &sim, &err) != RIS_OK) {
+    if (ris_model_load(RIS_SOURCE_DIR "/assets/human", &model, &err) != RIS_OK ||
+        ris_sim_create_cpu(model, &sim, &err) != RIS_OK) {
         print_error("%s\n", err.text);
         return -1;
     }
@@ -76,7 +77,8 @@ static double hold(const char *first, const char *second)
         for (uint32_t c = 0; names[k] && c < model->channel_count; ++c) {
             const size_t length = strlen(names[k]);
             const char *name = model->channel[c].name;
-            if (strncmp(name, names[k], length) == 0 && (name[length] == '\0' || (name[length] == '.' && name[length + 2] == '\0'))) {
+            if (strncmp(name, names[k], length) == 0 &&
+                (name[length] == '\0' || (name[length] == '.' && name[length + 2] == '\0'))) {
                 pose[c] = 1.0f;
                 ++set;
             }
@@ -147,7 +149,8 @@ static void the_head_is_big_enough_and_rests(void **state)
     assert_true(model->moving_count >= 2000);
     assert_true(model->stable_dt_s > model->push.dt_s);
     for (uint32_t i = 0; i < model->node_count; ++i) { /* every simulated node is held */
-        assert_true(!(model->rest_position[i].w > 0.0f) || (model->anchor_param[i].normal > 0.0f && model->anchor_param[i].tangential > 0.0f));
+        assert_true(!(model->rest_position[i].w > 0.0f) ||
+                    (model->anchor_param[i].normal > 0.0f && model->anchor_param[i].tangential > 0.0f));
     }
     memset(pose, 0, model->channel_count * sizeof *pose);
     for (int i = 0; i < 60; ++i) {
@@ -302,8 +305,12 @@ static void grids_matter(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_head_is_big_enough_and_rests), cmocka_unit_test(a_smile_lifts_both_corners), cmocka_unit_test(brows_move_alone),
-        cmocka_unit_test(the_jaw_leaves_the_skull_alone),   cmocka_unit_test(poses_combine),              cmocka_unit_test(no_channel_is_dead),
+        cmocka_unit_test(the_head_is_big_enough_and_rests),
+        cmocka_unit_test(a_smile_lifts_both_corners),
+        cmocka_unit_test(brows_move_alone),
+        cmocka_unit_test(the_jaw_leaves_the_skull_alone),
+        cmocka_unit_test(poses_combine),
+        cmocka_unit_test(no_channel_is_dead),
         cmocka_unit_test(grids_matter),
     };
     return cmocka_run_group_tests(tests, open_head, close_head);

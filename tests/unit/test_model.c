@@ -1,4 +1,5 @@
-/* The bake, against hand-computed numbers: KA-02, 09, 10, 11, 13, 23, 24, 38, 40, 41, 42, 28, 48 and the bending umbrella. */
+/* The bake, against hand-computed numbers: KA-02, 09, 10, 11, 13, 23, 24, 38, 40, 41, 42, 28, 48 and the
+ * bending umbrella. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -33,7 +34,8 @@ static void expect_refusal(const ris_head *head, const char *part)
     }
 }
 
-/* KA-11: two equilateral triangles of side 1: interior edge g = 0.8660, boundary edges half of it; any scale. */
+/* KA-11: two equilateral triangles of side 1: interior edge g = 0.8660, boundary edges half of it; any
+ * scale. */
 static void area_ratio_of_equilateral_edges(void **state)
 {
     (void)state;
@@ -93,12 +95,13 @@ static void mass_from_density(void **state)
     ris_head_finish(&head);
 }
 
-/* KA-02: of a kite the shorter diagonal; of equal diagonals the one at the topmost vertex, on both sides of the mirror. */
+/* KA-02: of a kite the shorter diagonal; of equal diagonals the one at the topmost vertex, on both sides
+ * of the mirror. */
 static void quads_split_mirror_symmetrically(void **state)
 {
     (void)state;
-    const ris_vec3 p[] = {{1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {-1, 0, 0}, {-2, 0, 0}, {-2, 1, 0}, {-1, 1, 0},
-                          {3, 0, 0}, {4, -1, 0}, {4.5f, 1.5f, 0}, {3, 1, 0}};
+    const ris_vec3 p[] = {{1, 0, 0},  {2, 0, 0},  {2, 1, 0}, {1, 1, 0},  {-1, 0, 0},      {-2, 0, 0},
+                          {-2, 1, 0}, {-1, 1, 0}, {3, 0, 0}, {4, -1, 0}, {4.5f, 1.5f, 0}, {3, 1, 0}};
     const uint32_t corners[] = {4, 4, 4}, v[] = {0, 1, 2, 3, 5, 4, 7, 6, 8, 9, 10, 11};
     ris_head head = mesh_head(12, p, 3, corners, v, NULL);
     ris_model *model = bake(&head);
@@ -142,7 +145,8 @@ static void bad_meshes_are_refused(void **state)
     ris_head_finish(&head);
 }
 
-/* Spec 2.9: too long a step is refused with the number of substeps that suffices, and that number is then accepted. */
+/* Spec 2.9: too long a step is refused with the number of substeps that suffices, and that number is then
+ * accepted. */
 static void unstable_substeps_are_refused(void **state)
 {
     (void)state;
@@ -166,7 +170,8 @@ static void unstable_substeps_are_refused(void **state)
     assert_int_equal(ris_scene_model(&def, &model, &err), RIS_ERROR_DATA);
 }
 
-/* KA-09, and the umbrella: weights of a moving node sum to 1, the transpose carries the stiffness, static umbrellas are left out. */
+/* KA-09, and the umbrella: weights of a moving node sum to 1, the transpose carries the stiffness, static
+ * umbrellas are left out. */
 static void moving_nodes_and_umbrellas(void **state)
 {
     (void)state;
@@ -191,7 +196,8 @@ static void moving_nodes_and_umbrellas(void **state)
         }
         assert_near(sum, moves ? 1.0 : 0.0, 1e-5);
         assert_near(model->anchor_param[i].bend, moves ? stiffness : 0.0, 1e-4);
-        assert_true(!moves || (model->anchor_param[i].normal > 0.0f && model->anchor_param[i].tangential > 0.0f));
+        assert_true(!moves ||
+                    (model->anchor_param[i].normal > 0.0f && model->anchor_param[i].tangential > 0.0f));
     }
     ris_model_destroy(model);
 }
@@ -211,14 +217,16 @@ static ris_head flat_skin(void)
     return mesh_head(441, p, 400, corners, v, NULL);
 }
 
-/* KA-38: on flat skin the grid lies 4.0 mm deep, 4 mm thick; KA-40: 7 x 3 points give 2 fibres of 7 points. */
+/* KA-38: on flat skin the grid lies 4.0 mm deep, 4 mm thick; KA-40: 7 x 3 points give 2 fibres of 7
+ * points. */
 static void grids_sink_below_flat_skin(void **state)
 {
     (void)state;
     ris_head head = flat_skin();
     ris_vec3 grid[21];
     for (uint32_t k = 0; k < 21; ++k) {
-        grid[k] = v3((float)(k % 3) * 5.0f - 5.0f, (float)(k / 3) * 5.0f - 15.0f, 1.5f); /* above the skin: it is projected */
+        grid[k] = v3((float)(k % 3) * 5.0f - 5.0f, (float)(k / 3) * 5.0f - 15.0f,
+                     1.5f); /* above the skin: it is projected */
     }
     set_muscle(add_muscles(&head, 1), "test_muscle.L", 7, 3, grid);
     ris_model *model = bake(&head);
@@ -241,7 +249,8 @@ static void grids_sink_below_flat_skin(void **state)
     assert_false(model->muscle[0].on_jaw);
     ris_model_destroy(model);
 
-    for (uint32_t i = 0; i < head.skin.vertex_count; ++i) { /* KA-41: a jaw below y = 12 wins the vote of most rows */
+    for (uint32_t i = 0; i < head.skin.vertex_count;
+         ++i) { /* KA-41: a jaw below y = 12 wins the vote of most rows */
         head.jaw_weight[i] = head.skin.position[i].y < 10.0f ? 1.0f : 0.0f;
     }
     head.muscle[0].bone = RIS_BONE_AUTO;
@@ -256,8 +265,8 @@ static void grids_sink_below_flat_skin(void **state)
     ris_head_finish(&head);
 }
 
-/* Weights of the default tissue on flat skin: none before the insertion profile starts, all at its end, none beyond the radius;
- * an explicit attach list restricts them. */
+/* Weights of the default tissue on flat skin: none before the insertion profile starts, all at its end,
+ * none beyond the radius; an explicit attach list restricts them. */
 static void weights_follow_profile_radius_and_list(void **state)
 {
     (void)state;
@@ -298,7 +307,8 @@ static void weights_follow_profile_radius_and_list(void **state)
     ris_head_finish(&head);
 }
 
-/* KA-42: closed lips. Two skins face each other 0.4 mm apart with a muscle behind each: every vertex binds to its own. */
+/* KA-42: closed lips. Two skins face each other 0.4 mm apart with a muscle behind each: every vertex binds
+ * to its own. */
 static void closed_lips_do_not_mix(void **state)
 {
     (void)state;
@@ -338,7 +348,8 @@ static void closed_lips_do_not_mix(void **state)
     }
 }
 
-/* KA-28 on the scene: each corner of the mouth joins its two pullers and both halves of the orbicularis; the brow joins nothing. */
+/* KA-28 on the scene: each corner of the mouth joins its two pullers and both halves of the orbicularis;
+ * the brow joins nothing. */
 static void corners_of_the_mouth_are_groups(void **state)
 {
     (void)state;
@@ -364,8 +375,9 @@ static void corners_of_the_mouth_are_groups(void **state)
 static void channels_are_muscles_then_beside(void **state)
 {
     (void)state;
-    static const char *const order[] = {"jaw.open", "jaw.forward", "jaw.side", "eye.yaw.L", "eye.yaw.R", "eye.pitch.L", "eye.pitch.R",
-                                        "head.yaw", "head.pitch", "head.roll", "head.x", "head.y", "head.z"};
+    static const char *const order[] = {"jaw.open",    "jaw.forward", "jaw.side", "eye.yaw.L",  "eye.yaw.R",
+                                        "eye.pitch.L", "eye.pitch.R", "head.yaw", "head.pitch", "head.roll",
+                                        "head.x",      "head.y",      "head.z"};
     ris_scene_def def = ris_default_scene_def();
     ris_model *model = NULL;
     ris_error err = {0};
@@ -388,12 +400,18 @@ static void channels_are_muscles_then_beside(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(area_ratio_of_equilateral_edges),  cmocka_unit_test(area_ratio_of_right_isosceles_grid),
-        cmocka_unit_test(mass_from_density),                cmocka_unit_test(quads_split_mirror_symmetrically),
-        cmocka_unit_test(bad_meshes_are_refused),           cmocka_unit_test(unstable_substeps_are_refused),
-        cmocka_unit_test(moving_nodes_and_umbrellas),       cmocka_unit_test(grids_sink_below_flat_skin),
-        cmocka_unit_test(weights_follow_profile_radius_and_list), cmocka_unit_test(closed_lips_do_not_mix),
-        cmocka_unit_test(corners_of_the_mouth_are_groups),  cmocka_unit_test(channels_are_muscles_then_beside),
+        cmocka_unit_test(area_ratio_of_equilateral_edges),
+        cmocka_unit_test(area_ratio_of_right_isosceles_grid),
+        cmocka_unit_test(mass_from_density),
+        cmocka_unit_test(quads_split_mirror_symmetrically),
+        cmocka_unit_test(bad_meshes_are_refused),
+        cmocka_unit_test(unstable_substeps_are_refused),
+        cmocka_unit_test(moving_nodes_and_umbrellas),
+        cmocka_unit_test(grids_sink_below_flat_skin),
+        cmocka_unit_test(weights_follow_profile_radius_and_list),
+        cmocka_unit_test(closed_lips_do_not_mix),
+        cmocka_unit_test(corners_of_the_mouth_are_groups),
+        cmocka_unit_test(channels_are_muscles_then_beside),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* The host muscle stages against hand-computed numbers: KA-05, 27, 30, 31, 32, 33, 35, 36, 37 and the lip drag. */
+/* The host muscle stages against hand-computed numbers: KA-05, 27, 30, 31, 32, 33, 35, 36, 37 and the lip
+ * drag. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -38,9 +39,11 @@ static void jaw_rotation(void **state) /* KA-05 */
     jaw = ris__rigid_turn(v3(0, 5, 10), axis, 15.0 * 3.14159265358979323846 / 180.0);
     assert_point(ris__rigid_apply(&jaw, v3(0, -55, 100)), 0.0f, -76.249f, 81.404f, 1e-3f);
     jaw = ris__rigid_turn(origin, v3(0, 1, 0), 3.14159265358979323846 / 2.0);
-    assert_point(ris__rigid_apply(&jaw, v3(0, 0, 1)), 1.0f, 0.0f, 0.0f, 1e-6f); /* a yaw of 90 degrees looks to the left */
+    assert_point(ris__rigid_apply(&jaw, v3(0, 0, 1)), 1.0f, 0.0f, 0.0f,
+                 1e-6f); /* a yaw of 90 degrees looks to the left */
     jaw = ris__rigid_turn(origin, axis, 0.0);
-    assert_true(jaw.identity && jaw.rotation[0] == 1.0f && jaw.rotation[5] == 0.0f && jaw.rotation[8] == 1.0f);
+    assert_true(jaw.identity && jaw.rotation[0] == 1.0f && jaw.rotation[5] == 0.0f &&
+                jaw.rotation[8] == 1.0f);
 }
 
 static const ris_vec3 bent[4] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {1, 2, 0}};
@@ -82,8 +85,10 @@ static void sphincter_contraction(void **state) /* KA-32 */
     assert_point(ris__contract_sphincter(p, a0, a1, 1, 1, 3, 0.25f), 15, 0, 1.25f, 1e-5f);
     assert_point(ris__contract_sphincter(p, a0, a1, 1, 2, 3, 0.25f), 15, 0, 2.5f, 1e-5f);
     assert_point(ris__contract_sphincter(p, a0, a1, 1, 2, 3, 1), 0, 0, 10, 1e-5f);
-    assert_point(ris__contract_sphincter(p, a0, a1, 0, 2, 3, 0.25f), 15, 0, -2.5f, 1e-5f); /* a moves z alone */
-    assert_point(ris__contract_sphincter(p, a0, a0, 1, 0, 1, 0.5f), 10, 0, -5, 1e-5f);     /* no axis: towards its point */
+    assert_point(ris__contract_sphincter(p, a0, a1, 0, 2, 3, 0.25f), 15, 0, -2.5f,
+                 1e-5f); /* a moves z alone */
+    assert_point(ris__contract_sphincter(p, a0, a0, 1, 0, 1, 0.5f), 10, 0, -5,
+                 1e-5f); /* no axis: towards its point */
 }
 
 static void group_resolution(void **state) /* KA-33 */
@@ -130,15 +135,18 @@ static void bulge_factors(void **state) /* KA-36 */
     assert_true(ris__bulge_factor(RIS_MUSCLE_SPHINCTER, 5.0f, 0, 5) > 0.0f);
 }
 
-/* KA-37: translation and rotation carry the attached point rigidly; antiparallel and vanished segments stay finite. */
+/* KA-37: translation and rotation carry the attached point rigidly; antiparallel and vanished segments
+ * stay finite. */
 static void segment_frames(void **state)
 {
     (void)state;
     const ris_segment segment = {{0.5f, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 4, 3}};
     const ris_vec3 p0 = {0, 0, 0}, p1 = {1, 0, 0}, local = {0.25f, 0.5f, -0.5f};
     assert_point(ris__segment_point(&segment, p0, p1, p0, p1, 1, local), 0.75f, 2, -1.5f, 1e-6f);
-    assert_point(ris__segment_point(&segment, p0, p1, v3(5, 6, 7), v3(6, 6, 7), 1, local), 5.75f, 8, 5.5f, 1e-5f);
-    assert_point(ris__segment_point(&segment, p0, p1, p0, v3(0, 1, 0), 1, local), -2, 0.75f, -1.5f, 1e-5f); /* x to y */
+    assert_point(ris__segment_point(&segment, p0, p1, v3(5, 6, 7), v3(6, 6, 7), 1, local), 5.75f, 8, 5.5f,
+                 1e-5f);
+    assert_point(ris__segment_point(&segment, p0, p1, p0, v3(0, 1, 0), 1, local), -2, 0.75f, -1.5f,
+                 1e-5f); /* x to y */
     assert_point(ris__segment_point(&segment, p0, p1, p0, v3(2, 0, 0), 0.5f, local), 1.5f, 1, -1.5f, 1e-6f);
     assert_point(ris__segment_point(&segment, p0, p1, p0, v3(-1, 0, 0), 1, local), -0.75f, -2, -1.5f, 1e-5f);
     const ris_vec3 gone = ris__segment_point(&segment, p0, p1, p0, p0, 1, local);
@@ -231,14 +239,15 @@ static void muscle_points_are_means(void **state)
     fixture f = open_rig(RIS_TISSUE_RISORIUS);
     const ris_muscle *muscle = &f.model->muscle[0];
     assert_int_equal(muscle->fiber_count, 2);
-    const ris_vec3 a = f.model->fiber_point[f.model->fiber[0].first_point + 2], b = f.model->fiber_point[f.model->fiber[1].first_point + 2];
+    const ris_vec3 a = f.model->fiber_point[f.model->fiber[0].first_point + 2],
+                   b = f.model->fiber_point[f.model->fiber[1].first_point + 2];
     const ris_vec3 mean = ris__muscle_point(f.model, muscle, f.model->fiber_point, 2);
     assert_point(mean, 0.5f * (a.x + b.x), 0.5f * (a.y + b.y), 0.5f * (a.z + b.z), 1e-5f);
     close_rig(&f);
 }
 
-/* The corner of a smile moves with the muscle, the drag falls to nothing at the midline and never crosses it, and the deltas of a
- * tick add up to the change of the target. */
+/* The corner of a smile moves with the muscle, the drag falls to nothing at the midline and never crosses
+ * it, and the deltas of a tick add up to the change of the target. */
 static void smile_drags_the_lip(void **state)
 {
     (void)state;
@@ -263,7 +272,8 @@ static void smile_drags_the_lip(void **state)
     const uint32_t corner = row * columns + 33;
     assert_true(target_delta(&f, corner).y > 3.0f && target_delta(&f, corner).x > 1.0f);
     run(&f); /* held: nothing more to shift */
-    assert_true(f.rig.delta[corner].x == 0.0f && f.rig.delta[corner].y == 0.0f && f.rig.delta[corner].z == 0.0f);
+    assert_true(f.rig.delta[corner].x == 0.0f && f.rig.delta[corner].y == 0.0f &&
+                f.rig.delta[corner].z == 0.0f);
     close_rig(&f);
 }
 
@@ -290,8 +300,8 @@ static void jaw_carries_the_lower_face(void **state)
     close_rig(&f);
 }
 
-/* KA-37 in the kaehler tissue: anchor and mirror move by the same displacement. KA-35: the group's passive members lengthen, and
- * their free sections are drawn towards the straight line. */
+/* KA-37 in the kaehler tissue: anchor and mirror move by the same displacement. KA-35: the group's passive
+ * members lengthen, and their free sections are drawn towards the straight line. */
 static void kaehler_pairs_and_stretching(void **state)
 {
     (void)state;
@@ -302,14 +312,16 @@ static void kaehler_pairs_and_stretching(void **state)
     run(&f);
     uint32_t moved = 0;
     for (uint32_t i = 0; i < f.model->node_count; ++i) {
-        const ris_vec3 a = v3_sub(v4_xyz(f.rig.point[i].a), v4_xyz(rest[i].a)), m = v3_sub(v4_xyz(f.rig.point[i].b), v4_xyz(rest[i].b));
+        const ris_vec3 a = v3_sub(v4_xyz(f.rig.point[i].a), v4_xyz(rest[i].a)),
+                       m = v3_sub(v4_xyz(f.rig.point[i].b), v4_xyz(rest[i].b));
         assert_point(m, a.x, a.y, a.z, 2e-5f);
         moved += v3_length(a) > 1.0f;
     }
     assert_true(moved > 50);
     const ris_muscle *idle = &f.model->muscle[ris_model_channel(f.model, "depressor_anguli_oris.L")];
     const uint32_t first = f.model->fiber[idle->first_fiber].first_point;
-    assert_true(polyline(f.rig.q + first, idle->point_count) > 1.05f * polyline(f.rig.p + first, idle->point_count));
+    assert_true(polyline(f.rig.q + first, idle->point_count) >
+                1.05f * polyline(f.rig.p + first, idle->point_count));
     for (uint32_t i = 1; i + 1 < idle->point_count; ++i) {
         assert_true(v3_distance(f.rig.q[first + i], f.rig.p[first + i]) > 0.5f);
     }
@@ -320,10 +332,18 @@ static void kaehler_pairs_and_stretching(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(jaw_rotation),        cmocka_unit_test(linear_contraction),  cmocka_unit_test(sphincter_contraction),
-        cmocka_unit_test(group_resolution),    cmocka_unit_test(relax_weight),        cmocka_unit_test(bulge_factors),
-        cmocka_unit_test(segment_frames),      cmocka_unit_test(powers_without_libm), cmocka_unit_test(neutral_is_identity),
-        cmocka_unit_test(muscle_points_are_means), cmocka_unit_test(smile_drags_the_lip), cmocka_unit_test(jaw_carries_the_lower_face),
+        cmocka_unit_test(jaw_rotation),
+        cmocka_unit_test(linear_contraction),
+        cmocka_unit_test(sphincter_contraction),
+        cmocka_unit_test(group_resolution),
+        cmocka_unit_test(relax_weight),
+        cmocka_unit_test(bulge_factors),
+        cmocka_unit_test(segment_frames),
+        cmocka_unit_test(powers_without_libm),
+        cmocka_unit_test(neutral_is_identity),
+        cmocka_unit_test(muscle_points_are_means),
+        cmocka_unit_test(smile_drags_the_lip),
+        cmocka_unit_test(jaw_carries_the_lower_face),
         cmocka_unit_test(kaehler_pairs_and_stretching),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

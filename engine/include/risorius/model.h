@@ -30,7 +30,7 @@ typedef struct ris_segment {
 typedef struct ris_muscle {
     char name[RIS_NAME_SIZE];
     ris_muscle_kind kind;
-    bool on_jaw;            /* KA-41 */
+    bool on_jaw;                       /* KA-41 */
     uint32_t fiber_count, point_count; /* points per fibre */
     uint32_t first_fiber;
     float max_shortening, insertion_start, lip_drag_power, radius_mm, gain;
@@ -80,11 +80,11 @@ typedef struct ris_model {
     ris_anchor_param *anchor_param; /* (node_count) */
     ris_vec4 *rest_normal;          /* unit (node_count) */
     uint32_t *triangle;             /* mirror-symmetric triangulation of the skin (triangle_count x 3) */
-    uint32_t *triangle_corner;      /* corner of head->skin each triangle vertex came from (triangle_count x 3) */
-    float *node_area_mm2;           /* third of the incident triangles (node_count) */
+    uint32_t *triangle_corner; /* corner of head->skin each triangle vertex came from (triangle_count x 3) */
+    float *node_area_mm2;      /* third of the incident triangles (node_count) */
     float mass_g;
-    ris_sim_push push;              /* constants of the stages with dt_s = 1/60/substeps */
-    float stable_dt_s;              /* bound of spec/kaehler.md 2.9 */
+    ris_sim_push push; /* constants of the stages with dt_s = 1/60/substeps */
+    float stable_dt_s; /* bound of spec/kaehler.md 2.9 */
 
     /* rig */
     uint32_t channel_count, muscle_count, fiber_count, fiber_point_count, segment_count;
@@ -100,11 +100,12 @@ typedef struct ris_model {
     uint32_t group_count, group_point_count;
     ris_group *group;
     ris_group_point *group_point;
-    ris_vec3 *bone_anchor; /* point on the bone below the node at rest, mm (node_count) */
+    ris_vec3 *bone_anchor;   /* point on the bone below the node at rest, mm (node_count) */
     const float *jaw_weight; /* (node_count) */
 } ris_model;
 
-/* Bakes a head; head must outlive the model. Errors: RIS_ERROR_DATA with what is wrong (unstable dt, node without anchor ...). */
+/* Bakes a head; head must outlive the model. Errors: RIS_ERROR_DATA with what is wrong (unstable dt, node
+ * without anchor ...). */
 ris_result ris_model_create(const ris_head *head, ris_model **out, ris_error *err);
 /* Loads directory and bakes it; the model owns the head. */
 ris_result ris_model_load(const char *directory, ris_model **out, ris_error *err);

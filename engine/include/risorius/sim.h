@@ -1,6 +1,6 @@
-/* The simulation: a pose in, skin positions and normals out, on the CPU or on a Vulkan device. One thread per sim.
- * One tick = 1/60 s: jaw_pose .. muscle_attach on the host, anchor_shift, substeps of
- * [bend, spring_force, verlet], normal on the backend. */
+/* The simulation: a pose in, skin positions and normals out, on the CPU or on a Vulkan device. One thread
+ * per sim. One tick = 1/60 s: jaw_pose .. muscle_attach on the host, anchor_shift, substeps of [bend,
+ * spring_force, verlet], normal on the backend. */
 #pragma once
 
 #include "risorius/model.h"
@@ -16,18 +16,29 @@ struct ris_device;
 
 /* Stages that have a shader and a CPU twin, in frame order. */
 typedef enum ris_stage {
-    RIS_STAGE_ANCHOR_SHIFT, RIS_STAGE_BEND, RIS_STAGE_SPRING_FORCE, RIS_STAGE_VERLET, RIS_STAGE_NORMAL, RIS_STAGE_COUNT
+    RIS_STAGE_ANCHOR_SHIFT,
+    RIS_STAGE_BEND,
+    RIS_STAGE_SPRING_FORCE,
+    RIS_STAGE_VERLET,
+    RIS_STAGE_NORMAL,
+    RIS_STAGE_COUNT
 } ris_stage;
 const char *ris_stage_name(ris_stage stage);
 
 /* State buffers that can be read and written, ris_vec4 per node. */
 typedef enum ris_state {
-    RIS_STATE_POSITION, RIS_STATE_VELOCITY_HALF, RIS_STATE_VELOCITY_PREV, RIS_STATE_FORCE, RIS_STATE_BEND,
-    RIS_STATE_NORMAL, RIS_STATE_COUNT
+    RIS_STATE_POSITION,
+    RIS_STATE_VELOCITY_HALF,
+    RIS_STATE_VELOCITY_PREV,
+    RIS_STATE_FORCE,
+    RIS_STATE_BEND,
+    RIS_STATE_NORMAL,
+    RIS_STATE_COUNT
 } ris_state;
 const char *ris_state_name(ris_state state);
 
-/* Backend times of the last tick, ms; host and wait filled by every backend, stages where it can measure them. */
+/* Backend times of the last tick, ms; host and wait filled by every backend, stages where it can measure
+ * them. */
 typedef struct ris_sim_times {
     double muscle_ms;                 /* jaw_pose .. muscle_attach on the host */
     double upload_ms;                 /* anchor upload */
@@ -37,18 +48,22 @@ typedef struct ris_sim_times {
 
 ris_result ris_sim_create_cpu(const ris_model *model, ris_sim **out, ris_error *err);
 /* device must outlive the sim. Defined in sim/vk; absent from cpu-only builds. */
-ris_result ris_sim_create_vk(const ris_model *model, struct ris_device *device, ris_sim **out, ris_error *err);
+ris_result ris_sim_create_vk(const ris_model *model, struct ris_device *device, ris_sim **out,
+                             ris_error *err);
 void ris_sim_destroy(ris_sim *sim);
 
 /* Puts every node at rest, velocities zero, pose neutral. */
 ris_result ris_sim_reset(ris_sim *sim, ris_error *err);
-/* Advances one tick with the pose (channel_count floats, clamped by the caller). RIS_ERROR_DIVERGED names stage and vertex. */
+/* Advances one tick with the pose (channel_count floats, clamped by the caller). RIS_ERROR_DIVERGED names
+ * stage and vertex. */
 ris_result ris_sim_tick(ris_sim *sim, const float *pose, ris_error *err);
-/* Ticks until no node is faster than 0.1 mm/s for 0.25 s; after 20 s RIS_ERROR_FAILED naming the vertex. out_time_s may be NULL. */
+/* Ticks until no node is faster than 0.1 mm/s for 0.25 s; after 20 s RIS_ERROR_FAILED naming the vertex.
+ * out_time_s may be NULL. */
 ris_result ris_sim_settle(ris_sim *sim, const float *pose, double *out_time_s, ris_error *err);
 
-ris_result ris_sim_read(ris_sim *sim, ris_state state, ris_vec4 *out, ris_error *err);       /* (node_count) */
-ris_result ris_sim_write(ris_sim *sim, ris_state state, const ris_vec4 *in, ris_error *err); /* (node_count) */
+ris_result ris_sim_read(ris_sim *sim, ris_state state, ris_vec4 *out, ris_error *err); /* (node_count) */
+ris_result ris_sim_write(ris_sim *sim, ris_state state, const ris_vec4 *in,
+                         ris_error *err); /* (node_count) */
 /* FNV-1a 64 over position, velocity_half and velocity_prev bits in node order. */
 ris_result ris_sim_hash(ris_sim *sim, uint64_t *out, ris_error *err);
 const ris_sim_times *ris_sim_get_times(const ris_sim *sim);
@@ -56,14 +71,17 @@ const ris_model *ris_sim_get_model(const ris_sim *sim);
 /* "cpu", or the device and driver names. */
 const char *ris_sim_backend(const ris_sim *sim);
 
-/* Rigid transform of a bone this tick: row-major 3x4, mm. bone: JAW, EYE_L, EYE_R, SKULL (identity). Head pose is not in it. */
+/* Rigid transform of a bone this tick: row-major 3x4, mm. bone: JAW, EYE_L, EYE_R, SKULL (identity). Head
+ * pose is not in it. */
 void ris_sim_bone_transform(const ris_sim *sim, ris_bone bone, float out[12]);
 /* Head pose channels as a row-major 3x4, applied to everything when drawing. */
 void ris_sim_head_transform(const ris_sim *sim, float out[12]);
 
-/* Vertices of part `part` of the head (vertex_count of its mesh, w 1): by its bone, or riding on the skin at position
- * (node_count, as read from sim). Without the head pose, as the skin. RIS_ERROR_USAGE: no such part. */
-ris_result ris_sim_part(const ris_sim *sim, uint32_t part, const ris_vec4 *position, ris_vec4 *out, ris_error *err);
+/* Vertices of part `part` of the head (vertex_count of its mesh, w 1): by its bone, or riding on the skin
+ * at position (node_count, as read from sim). Without the head pose, as the skin. RIS_ERROR_USAGE: no such
+ * part. */
+ris_result ris_sim_part(const ris_sim *sim, uint32_t part, const ris_vec4 *position, ris_vec4 *out,
+                        ris_error *err);
 
 #ifdef __cplusplus
 }

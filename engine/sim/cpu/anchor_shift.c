@@ -1,4 +1,5 @@
-/* anchor_shift: KA-37 over-relaxation, every free node moves with its anchor once a tick. Order: docs/physics.md. */
+/* anchor_shift: KA-37 over-relaxation, every free node moves with its anchor once a tick. Order:
+ * docs/physics.md. */
 #include "sim/cpu/cpu_stage.h"
 
 void ris__cpu_anchor_shift(ris_cpu_state *state)

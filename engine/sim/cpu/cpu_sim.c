@@ -1,5 +1,5 @@
-/* The CPU reference behind ris_sim: every device stage in the same order on plain arrays. Written from spec/kaehler.md 2 and
- * docs/physics.md, apart from the shaders, so that parity means something. */
+/* The CPU reference behind ris_sim: every device stage in the same order on plain arrays. Written from
+ * spec/kaehler.md 2 and docs/physics.md, apart from the shaders, so that parity means something. */
 #include "sim/cpu/cpu_stage.h"
 #include "sim/sim_impl.h"
 
@@ -33,8 +33,10 @@ static void take_anchors(ris_cpu_state *state, const ris_anchor_frame *anchors)
 }
 
 static void (*const stages[RIS_STAGE_COUNT])(ris_cpu_state *) = {
-    [RIS_STAGE_ANCHOR_SHIFT] = ris__cpu_anchor_shift, [RIS_STAGE_BEND] = ris__cpu_bend,
-    [RIS_STAGE_SPRING_FORCE] = ris__cpu_spring_force, [RIS_STAGE_VERLET] = ris__cpu_verlet,
+    [RIS_STAGE_ANCHOR_SHIFT] = ris__cpu_anchor_shift,
+    [RIS_STAGE_BEND] = ris__cpu_bend,
+    [RIS_STAGE_SPRING_FORCE] = ris__cpu_spring_force,
+    [RIS_STAGE_VERLET] = ris__cpu_verlet,
     [RIS_STAGE_NORMAL] = ris__cpu_normal,
 };
 
@@ -45,7 +47,8 @@ static void timed_stage(ris_cpu_state *state, ris_stage stage, ris_sim_times *ti
     times->stage_ms[stage] += ris__clock_ms(start, ris__clock_ns());
 }
 
-static ris_result cpu_frame(void *self, const ris_anchor_frame *anchors, uint32_t substeps, ris_sim_times *times, ris_error *err)
+static ris_result cpu_frame(void *self, const ris_anchor_frame *anchors, uint32_t substeps,
+                            ris_sim_times *times, ris_error *err)
 {
     ris_cpu_state *state = self;
     (void)err;
@@ -116,13 +119,16 @@ ris_result ris_sim_create_cpu(const ris_model *model, ris_sim **out, ris_error *
         return result;
     }
     state->model = model;
-    ris_vec4 **const arrays[] = {&state->position, &state->velocity_half, &state->velocity_prev, &state->force,
-                                 &state->bend,     &state->normal,        &state->anchor_delta};
+    ris_vec4 **const arrays[] = {&state->position,    &state->velocity_half, &state->velocity_prev,
+                                 &state->force,       &state->bend,          &state->normal,
+                                 &state->anchor_delta};
     for (size_t k = 0; result == RIS_OK && k < sizeof arrays / sizeof arrays[0]; ++k) {
-        result = ris__model_alloc(arrays[k], model->node_count, sizeof **arrays[k], "the CPU simulation", err);
+        result =
+            ris__model_alloc(arrays[k], model->node_count, sizeof **arrays[k], "the CPU simulation", err);
     }
     if (result == RIS_OK) {
-        result = ris__model_alloc(&state->anchor_point, model->node_count, sizeof *state->anchor_point, "the CPU simulation", err);
+        result = ris__model_alloc(&state->anchor_point, model->node_count, sizeof *state->anchor_point,
+                                  "the CPU simulation", err);
     }
     if (result != RIS_OK) {
         cpu_destroy(state);

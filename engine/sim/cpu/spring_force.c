@@ -1,5 +1,6 @@
-/* spring_force: KA-11 area-based stiffness, KA-12 biphasic modulus, KA-14 and KA-15 anchors, KA-16 sum of forces (the damping is
- * verlet's), and the bending and anchors of the default tissue. Order: docs/physics.md. */
+/* spring_force: KA-11 area-based stiffness, KA-12 biphasic modulus, KA-14 and KA-15 anchors, KA-16 sum of
+ * forces (the damping is verlet's), and the bending and anchors of the default tissue. Order:
+ * docs/physics.md. */
 #include "sim/cpu/cpu_stage.h"
 
 #include "model/vec3.h"
@@ -13,9 +14,11 @@ float ris__spring_pull(const ris_sim_push *push, float area_ratio, float rest_mm
         tension = (push->compression * push->modulus_low) * (length_mm - rest_mm);
     } else if (push->flags & RIS_TISSUE_FLAG_CONTINUOUS) {
         const float s = push->switch_stretch * rest_mm;
-        tension = push->modulus_low * (f_min(length_mm, s) - rest_mm) + push->modulus_high * f_max(length_mm - s, 0.0f);
+        tension = push->modulus_low * (f_min(length_mm, s) - rest_mm) +
+                  push->modulus_high * f_max(length_mm - s, 0.0f);
     } else {
-        const float modulus = length_mm < push->switch_stretch * rest_mm ? push->modulus_low : push->modulus_high;
+        const float modulus =
+            length_mm < push->switch_stretch * rest_mm ? push->modulus_low : push->modulus_high;
         tension = modulus * (length_mm - rest_mm);
     }
     return length_mm < SMALLEST_RATIO * rest_mm ? 0.0f : (area_ratio * tension) / length_mm;
@@ -30,7 +33,8 @@ static ris_vec3 add_anchor_spring(ris_vec3 f, ris_vec3 x, ris_vec3 end, float k,
     return v3_mad(f, q, d);
 }
 
-static ris_vec3 add_anchor(ris_vec3 f, ris_vec3 x, const ris_anchor_param *param, const ris_anchor_point *anchor)
+static ris_vec3 add_anchor(ris_vec3 f, ris_vec3 x, const ris_anchor_param *param,
+                           const ris_anchor_point *anchor)
 {
     const ris_vec3 d = v3_sub(x, v4_xyz(anchor->a)), n = v4_xyz(anchor->b);
     const ris_vec3 m = v3_scale(n, v3_dot(n, d));

@@ -1,7 +1,9 @@
-/* verlet: KA-17 leapfrog with velocity evaluation, KA-16 damping, KA-18 start (v_half = v_prev = v0). Order: docs/physics.md. */
+/* verlet: KA-17 leapfrog with velocity evaluation, KA-16 damping, KA-18 start (v_half = v_prev = v0).
+ * Order: docs/physics.md. */
 #include "sim/cpu/cpu_stage.h"
 
-static void integrate(float *x, float *half, float *prev, float force, float inverse_mass, const ris_sim_push *push)
+static void integrate(float *x, float *half, float *prev, float force, float inverse_mass,
+                      const ris_sim_push *push)
 {
     const float h = *half;
     const float v = 1.5f * h - 0.5f * *prev;
