@@ -142,13 +142,16 @@ static ris_result sink_grid(ris_bake *bake, uint32_t m, ris_error *err)
              *normal = bake->grid_normal + bake->grid_first[m];
     const float depth = bake->head->tissue.skin_mm + (def->thickness_mm[0] + def->thickness_mm[1]) / 4.0f;
     grid_normals(bake, def, normal);
+    uint32_t row = 0, column = 0;
     for (uint32_t k = 0; k < def->rows * def->columns; ++k) {
         ris_vec3 on_skin = {0};
         if (!project_on_skin(bake, def->grid[k], normal[k], &on_skin)) {
             return ris_fail(err, RIS_ERROR_DATA,
                             "muscle %s: grid row %u, column %u has no skin within %g mm that faces it",
-                            def->name, k / def->columns, k % def->columns, (double)FARTHEST_MM);
+                            def->name, row, column, (double)FARTHEST_MM);
         }
+        column = column + 1 < def->columns ? column + 1 : 0;
+        row += column == 0;
         const float own = v3_dot(v3_sub(on_skin, def->grid[k]), normal[k]);
         point[k] = own > depth ? def->grid[k] : v3_mad(on_skin, -depth, normal[k]);
         bake->grid_depth[bake->grid_first[m] + k] = f_max(own, depth);

@@ -152,7 +152,8 @@ static ris_result make_muscle(const ris_scene_def *def, const band *b, ris_muscl
     }
     const float dx = b->to[0] - b->from[0], dy = b->to[1] - b->from[1], length = sqrtf(dx * dx + dy * dy);
     for (uint32_t k = 0; result == RIS_OK && k < b->rows * b->columns; ++k) {
-        const float t = (float)(k / b->columns) / (float)(b->rows - 1);
+        const uint32_t row = k / b->columns;
+        const float t = (float)row / (float)(b->rows - 1);
         const float s = (2.0f * (float)(k % b->columns) / (float)(b->columns - 1) - 1.0f) * -b->half_width;
         /* mirror images: the columns of a right muscle run the other way across */
         const float across = b->from[0] < 0.0f && b->kind == RIS_MUSCLE_LINEAR ? -s : s;
