@@ -100,6 +100,8 @@ static void group_resolution(void **state) /* KA-33 */
     assert_near(ris__resolve_group(2, c, distance, rest, 30, q).x, 0.03125, 1e-6);
     assert_near(q[0].x, -0.06875, 1e-6);
     assert_near(q[1].x, 0.13125, 1e-6);
+    assert_near(fabsf(q[0].x - 0.03125f), 0.1, 1e-5); /* both at their rest distance from the centroid */
+    assert_near(fabsf(q[1].x - 0.03125f), 0.1, 1e-5);
     memcpy(q, rest, sizeof q);
     assert_near(ris__resolve_group(2, none, distance, rest, 30, q).x, 0.0, 1e-7);
     assert_near(q[0].x, -0.1, 1e-7);
@@ -329,6 +331,38 @@ static void kaehler_pairs_and_stretching(void **state)
     close_rig(&f);
 }
 
+/* KA-35 with w = 1: a lengthened fibre without constrained points becomes straight; its ends stay, and so
+ * does a shortened one. */
+static void long_fibres_straighten(void **state)
+{
+    (void)state;
+    fixture f = open_rig(RIS_TISSUE_KAEHLER);
+    const ris_muscle *muscle = &f.model->muscle[ris_model_channel(f.model, "frontalis_inner.L")];
+    const uint32_t first = f.model->fiber[muscle->first_fiber].first_point, n = muscle->point_count;
+    ris_vec3 *q = f.rig.q + first;
+    for (uint32_t i = 0; i < n; ++i) {
+        q[i] = v3_mad(f.rig.p[first], 1.4f, v3_sub(f.rig.p[first + i], f.rig.p[first]));
+        q[i].x += i % 2 ? 2.0f : 0.0f;
+    }
+    const ris_vec3 from = q[0], to = q[n - 1];
+    ris__muscle_relax(&f.rig);
+    assert_memory_equal(&q[0], &from, sizeof from);
+    assert_memory_equal(&q[n - 1], &to, sizeof to);
+    const ris_vec3 line = v3_unit_or(v3_sub(to, from), v3(0, 0, 0));
+    for (uint32_t i = 1; i + 1 < n; ++i) {
+        const ris_vec3 d = v3_sub(q[i], from);
+        assert_true(v3_length(v3_cross(d, line)) < 1e-4f);
+        assert_true(v3_dot(d, line) > v3_dot(v3_sub(q[i - 1], from), line));
+    }
+    ris__contract_linear(f.rig.p + first, n, 0.3f, q);
+    ris_vec3 short_q[16];
+    assert_true(n <= 16);
+    memcpy(short_q, q, n * sizeof *q);
+    ris__muscle_relax(&f.rig);
+    assert_memory_equal(short_q, q, n * sizeof *q);
+    close_rig(&f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -345,6 +379,7 @@ int main(void)
         cmocka_unit_test(smile_drags_the_lip),
         cmocka_unit_test(jaw_carries_the_lower_face),
         cmocka_unit_test(kaehler_pairs_and_stretching),
+        cmocka_unit_test(long_fibres_straighten),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
