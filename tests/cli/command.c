@@ -56,21 +56,38 @@ static void sleep_ms(int ms)
     nanosleep(&pause, NULL);
 }
 
+/* Parts line into at most WORDS words, stored in copy (as long as line). */
+static void split_words(const char *line, char *copy, char **words)
+{
+    int count = 0;
+    bool quoted = false, inside = false;
+    for (; *line; line++) {
+        if (*line == ' ' && !quoted) {
+            *copy++ = '\0';
+            inside = false;
+            continue;
+        }
+        if (!inside && count < WORDS) {
+            words[count++] = copy;
+        }
+        inside = true;
+        if (*line == '\'') {
+            quoted = !quoted;
+        } else {
+            *copy++ = *line;
+        }
+    }
+    *copy = '\0';
+}
+
 void command_run(run_result *result, const command_def *def, const char *line)
 {
     static const command_def plain;
     char *copy = malloc(strlen(line) + 1);
     assert_non_null(copy);
-    strcpy(copy, line);
     char program[] = RIS_BUILD_DIR "/bin/risorius";
     char *words[WORDS + 2] = {program};
-    int count = 1;
-    for (char *word = strtok(copy, " "); word && count < WORDS; word = strtok(NULL, " ")) {
-        for (char *c = word; (c = strchr(c, '@')); c++) {
-            *c = ' ';
-        }
-        words[count++] = word;
-    }
+    split_words(line, copy, words + 1);
     FILE *out = tmpfile(), *err = tmpfile();
     assert_non_null(out);
     assert_non_null(err);

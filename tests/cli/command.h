@@ -22,7 +22,7 @@ typedef struct command_def {
     int interrupt_after_ms;     /* > 0: SIGINT after this time */
 } command_def;
 
-/* Runs build/bin/risorius with the words of `line`, which are parted by blanks ('@' in a word stands for a blank). */
+/* Runs build/bin/risorius with the words of `line`, which are parted by blanks outside of single quotes. */
 void command_run(run_result *result, const command_def *def, const char *line);
 
 /* A fresh folder for one test, "name" below the build; emptied first. */

@@ -9,8 +9,8 @@
 
 #include <cmocka.h>
 
-#define HEAD RIS_SOURCE_DIR "/assets/human"
-#define CLIP RIS_SOURCE_DIR "/assets/clips/first_light.json"
+#define HEAD "'" RIS_SOURCE_DIR "/assets/human'" /* quoted for a line */
+#define CLIP "'" RIS_SOURCE_DIR "/assets/clips/first_light.json'"
 
 static run_result run;
 
@@ -29,7 +29,7 @@ static void expect_bad_file(const char *name, const char *file, const char *text
     char folder[COMMAND_PATH_SIZE], line[COMMAND_PATH_SIZE + 32];
     command_folder(folder, name);
     command_spoil_head(folder, file, text);
-    snprintf(line, sizeof line, "info %s", folder);
+    snprintf(line, sizeof line, "info '%s'", folder);
     command_run(&run, NULL, line);
     expect_code(name, 3, in_err);
     assert_non_null(strstr(run.err, file));
@@ -42,7 +42,7 @@ static void expect_bad_clip(const char *name, const char *text, const char *in_e
     command_folder(folder, name);
     snprintf(path, sizeof path, "%s/clip.json", folder);
     command_write_file(path, text);
-    snprintf(line, sizeof line, "--device cpu export " HEAD " --clip %s --at 0 -o %s/out.obj", path, folder);
+    snprintf(line, sizeof line, "--device cpu export " HEAD " --clip '%s' --at 0 -o '%s/out.obj'", path, folder);
     command_run(&run, NULL, line);
     expect_code(name, 3, in_err);
     assert_int_equal(command_entries(folder), 1);
@@ -51,11 +51,11 @@ static void expect_bad_clip(const char *name, const char *text, const char *in_e
 static void missing_files(void **state)
 {
     (void)state;
-    command_run(&run, NULL, "info " RIS_BUILD_DIR "/no-such-head");
+    command_run(&run, NULL, "info '" RIS_BUILD_DIR "/no-such-head'");
     expect_code("no head", 3, "no-such-head");
     command_run(&run, NULL, "info " HEAD "/skin.obj");
     expect_code("a file as head", 3, "skin.obj");
-    command_run(&run, NULL, "--device cpu export " HEAD " --clip no-such-clip.json --at 0 -o " RIS_BUILD_DIR "/never.obj");
+    command_run(&run, NULL, "--device cpu export " HEAD " --clip no-such-clip.json --at 0 -o '" RIS_BUILD_DIR "/never.obj'");
     expect_code("no clip", 3, "no-such-clip.json");
     assert_false(command_exists(RIS_BUILD_DIR "/never.obj"));
 }
@@ -106,9 +106,9 @@ static void bad_clips(void **state)
 static void unknown_names_on_the_command_line(void **state)
 {
     (void)state;
-    command_run(&run, NULL, "--device cpu export " HEAD " --pose zygomaticus_mayor=1 -o " RIS_BUILD_DIR "/never.obj");
+    command_run(&run, NULL, "--device cpu export " HEAD " --pose zygomaticus_mayor=1 -o '" RIS_BUILD_DIR "/never.obj'");
     expect_code("pose", 2, "zygomaticus_major");
-    command_run(&run, NULL, "--device cpu export " HEAD " --pose jaw.open=wide -o " RIS_BUILD_DIR "/never.obj");
+    command_run(&run, NULL, "--device cpu export " HEAD " --pose jaw.open=wide -o '" RIS_BUILD_DIR "/never.obj'");
     expect_code("pose value", 2, "wide");
     assert_false(command_exists(RIS_BUILD_DIR "/never.obj"));
 }

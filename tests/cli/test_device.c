@@ -11,8 +11,8 @@
 #include <cmocka.h>
 #include <jansson.h>
 
-#define HEAD RIS_SOURCE_DIR "/assets/human"
-#define CLIP RIS_SOURCE_DIR "/assets/clips/first_light.json"
+#define HEAD "'" RIS_SOURCE_DIR "/assets/human'" /* quoted for a line */
+#define CLIP "'" RIS_SOURCE_DIR "/assets/clips/first_light.json'"
 
 static run_result run;
 static char folder[COMMAND_PATH_SIZE];
@@ -105,7 +105,7 @@ static void a_clip_gives_all_outputs_at_once(void **state)
     (void)state;
     char clip[COMMAND_PATH_SIZE + 16], line[2 * COMMAND_PATH_SIZE];
     write_short_clip(clip);
-    snprintf(line, sizeof line, "render " HEAD " --clip %s -o x.mp4 -o frames/%%03d.png -o x.pc2 --contact sheet.png "
+    snprintf(line, sizeof line, "render " HEAD " --clip '%s' -o x.mp4 -o frames/%%03d.png -o x.pc2 --contact sheet.png "
              "--size 64x80 --fps 8 --json", clip);
     expect("outputs", NULL, line, 0, 4);
     char frames[COMMAND_PATH_SIZE + 16];
@@ -156,14 +156,14 @@ static void bench_ends_where_compare_ends(void **state)
     (void)state;
     char clip[COMMAND_PATH_SIZE + 16], line[2 * COMMAND_PATH_SIZE], hash[32];
     write_short_clip(clip);
-    snprintf(line, sizeof line, "compare " HEAD " --clip %s --json", clip);
+    snprintf(line, sizeof line, "compare " HEAD " --clip '%s' --json", clip);
     expect("compare", NULL, line, 0, 0);
     json_t *root = json_loads(run.out, 0, NULL);
     assert_non_null(root);
     assert_int_equal(json_integer_value(json_object_get(root, "frames")), 30);
     snprintf(hash, sizeof hash, "%s", json_string_value(json_array_get(json_object_get(root, "hash"), 1)));
     json_decref(root);
-    snprintf(line, sizeof line, "bench " HEAD " --clip %s --repeat 2 --json", clip);
+    snprintf(line, sizeof line, "bench " HEAD " --clip '%s' --repeat 2 --json", clip);
     expect("bench", NULL, line, 0, 0);
     root = json_loads(run.out, 0, NULL);
     assert_non_null(root);
@@ -180,7 +180,7 @@ static void a_clip_that_hardly_moves_proves_nothing(void **state)
     snprintf(clip, sizeof clip, "%s/clip.json", place);
     command_write_file(clip, "{\"format\": \"risorius-clip\", \"version\": 1, \"duration_s\": 0.2, \"tracks\": [{\"target\": "
                              "\"jaw.open\", \"keys\": [{\"t\": 0, \"v\": 0, \"ease\": \"step\"}]}]}");
-    snprintf(line, sizeof line, "compare " HEAD " --clip %s", clip);
+    snprintf(line, sizeof line, "compare " HEAD " --clip '%s'", clip);
     expect("still", NULL, line, 1, 0);
     assert_non_null(strstr(run.err, "500"));
 }

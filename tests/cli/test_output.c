@@ -10,8 +10,8 @@
 #include <cmocka.h>
 #include <jansson.h>
 
-#define HEAD RIS_SOURCE_DIR "/assets/human"
-#define CLIP RIS_SOURCE_DIR "/assets/clips/first_light.json"
+#define HEAD "'" RIS_SOURCE_DIR "/assets/human'" /* quoted for a line */
+#define CLIP "'" RIS_SOURCE_DIR "/assets/clips/first_light.json'"
 
 static run_result run;
 
@@ -33,7 +33,7 @@ static void info_is_json(void **state)
     json_error_t error;
     json_t *root = json_loads(run.out, JSON_REJECT_DUPLICATES, &error);
     assert_non_null(root);
-    char *obj = command_read_file(HEAD "/skin.obj");
+    char *obj = command_read_file(RIS_SOURCE_DIR "/assets/human/skin.obj");
     assert_non_null(obj);
     assert_int_equal(json_integer_value(json_object_get(root, "vertices")), count_lines(obj, "v "));
     assert_int_equal(json_integer_value(json_object_get(root, "faces")), count_lines(obj, "f "));
@@ -85,16 +85,16 @@ static void export_keeps_the_order_of_the_skin(void **state)
     command_folder(folder, "export");
     snprintf(rest, sizeof rest, "%s/rest.obj", folder);
     snprintf(open, sizeof open, "%s/open.obj", folder);
-    snprintf(line, sizeof line, "--device cpu export " HEAD " -o %s", rest);
+    snprintf(line, sizeof line, "--device cpu export " HEAD " -o '%s'", rest);
     command_run(&run, NULL, line);
     assert_int_equal(run.code, 0);
-    snprintf(line, sizeof line, "--device cpu export " HEAD " --pose jaw.open=0.5 -o %s", open);
+    snprintf(line, sizeof line, "--device cpu export " HEAD " --pose jaw.open=0.5 -o '%s'", open);
     command_run(&run, NULL, line);
     assert_int_equal(run.code, 0);
     assert_int_equal(command_entries(folder), 2);
 
     uint32_t skin_count, rest_count, open_count;
-    double *skin = read_positions(HEAD "/skin.obj", &skin_count), *at_rest = read_positions(rest, &rest_count),
+    double *skin = read_positions(RIS_SOURCE_DIR "/assets/human/skin.obj", &skin_count), *at_rest = read_positions(rest, &rest_count),
            *opened = read_positions(open, &open_count);
     assert_int_equal(skin_count, rest_count);
     assert_int_equal(skin_count, open_count);
@@ -111,7 +111,7 @@ static void export_with_parts_adds_objects(void **state)
     char folder[COMMAND_PATH_SIZE], line[2 * COMMAND_PATH_SIZE], path[COMMAND_PATH_SIZE + 16];
     command_folder(folder, "parts");
     snprintf(path, sizeof path, "%s/all.obj", folder);
-    snprintf(line, sizeof line, "--device cpu export " HEAD " --clip " CLIP " --at 0.5 --parts -o %s", path);
+    snprintf(line, sizeof line, "--device cpu export " HEAD " --clip " CLIP " --at 0.5 --parts -o '%s'", path);
     command_run(&run, NULL, line);
     assert_int_equal(run.code, 0);
     char *text = command_read_file(path);
@@ -162,7 +162,7 @@ static void an_interrupt_leaves_nothing(void **state)
     command_write_file(path, "{\"format\": \"risorius-clip\", \"version\": 1, \"duration_s\": 600, \"tracks\": [{\"target\": "
                              "\"jaw.open\", \"keys\": [{\"t\": 0, \"v\": 0, \"ease\": \"linear\"}, {\"t\": 600, \"v\": 1, "
                              "\"ease\": \"step\"}]}]}");
-    snprintf(words, sizeof words, "render " HEAD " --clip %s -o x.pc2", path);
+    snprintf(words, sizeof words, "render " HEAD " --clip '%s' -o x.pc2", path);
     expect_nothing("interrupt", &def, words, 130);
 }
 
@@ -172,7 +172,7 @@ static void a_cache_has_every_frame(void **state)
     char folder[COMMAND_PATH_SIZE], line[2 * COMMAND_PATH_SIZE], path[COMMAND_PATH_SIZE + 16];
     command_folder(folder, "cache");
     snprintf(path, sizeof path, "%s/x.pc2", folder);
-    snprintf(line, sizeof line, "--device cpu render " HEAD " --pose jaw.open=0.3 --fps 24 -o %s", path);
+    snprintf(line, sizeof line, "--device cpu render " HEAD " --pose jaw.open=0.3 --fps 24 -o '%s'", path);
     command_run(&run, NULL, line);
     assert_int_equal(run.code, 0);
     FILE *file = fopen(path, "rb");

@@ -10,8 +10,8 @@
 
 #include <cmocka.h>
 
-#define HEAD RIS_SOURCE_DIR "/assets/human"
-#define CLIP RIS_SOURCE_DIR "/assets/clips/first_light.json"
+#define HEAD "'" RIS_SOURCE_DIR "/assets/human'" /* quoted for a line */
+#define CLIP "'" RIS_SOURCE_DIR "/assets/clips/first_light.json'"
 
 static run_result run;
 
@@ -80,7 +80,7 @@ static void wrong_words_are_usage_errors(void **state)
     expect("render " HEAD " --clip a --pose b=1 -o o.png", 2, "both");
     expect("render " HEAD " --clip a", 2, "-o");
     expect("render " HEAD " --clip a -o picture.jpeg", 2, ".png");
-    expect("render " HEAD " --clip a -o %s.png", 2, "%d");
+    expect("render " HEAD " --clip a -o '%s'.png", 2, "%d");
     expect("render " HEAD " --clip a -o %04d%04d.png", 2, "%d");
     expect("render " HEAD " --clip a -o a%n.png", 2, "%d");
     expect("render " HEAD " --clip a -o one.png", 2, "--at");

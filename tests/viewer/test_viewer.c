@@ -16,8 +16,8 @@
 #include <X11/keysym.h>
 #include <cmocka.h>
 
-#define HEAD RIS_SOURCE_DIR "/assets/human"
-#define CLIP RIS_SOURCE_DIR "/assets/clips/first_light.json"
+#define HEAD "'" RIS_SOURCE_DIR "/assets/human'" /* quoted for a line */
+#define CLIP "'" RIS_SOURCE_DIR "/assets/clips/first_light.json'"
 
 static run_result run;
 
@@ -27,7 +27,7 @@ static void sixty_frames_show_a_face(void **state)
     char folder[COMMAND_PATH_SIZE], line[2 * COMMAND_PATH_SIZE], path[COMMAND_PATH_SIZE + 16];
     command_folder(folder, "viewer");
     snprintf(path, sizeof path, "%s/shot.png", folder);
-    snprintf(line, sizeof line, "view " HEAD " --clip " CLIP " --size 160x200 --frames 60 --screenshot %s", path);
+    snprintf(line, sizeof line, "view " HEAD " --clip " CLIP " --size 160x200 --frames 60 --screenshot '%s'", path);
     command_run(&run, NULL, line);
     if (run.code != 0) {
         fail_msg("view: code %d, %s", run.code, run.err);
@@ -138,7 +138,8 @@ static void a_hand_may_do_what_it_likes(void **state)
         if (!freopen(path, "w", stderr)) {
             _exit(126);
         }
-        execl(RIS_BUILD_DIR "/bin/risorius", "risorius", "view", HEAD, "--clip", CLIP, "--size", "160x160", (char *)NULL);
+        execl(RIS_BUILD_DIR "/bin/risorius", "risorius", "view", RIS_SOURCE_DIR "/assets/human", "--clip",
+              RIS_SOURCE_DIR "/assets/clips/first_light.json", "--size", "160x160", (char *)NULL);
         _exit(127);
     }
     Window window = find_window(display);
