@@ -45,12 +45,14 @@ static ris_result open_device(ris_backend *out, const ris_cli *cli, const backen
 {
     (void)out;
     if (need->draw) {
-        return ris_fail(err, RIS_ERROR_DEVICE, "this risorius was built without Vulkan (RISORIUS_VULKAN=OFF), so it "
-                                               "cannot draw");
+        return ris_fail(err, RIS_ERROR_DEVICE,
+                        "this risorius was built without Vulkan (RISORIUS_VULKAN=OFF), so it "
+                        "cannot draw");
     }
     if (!backend_is_cpu(cli)) {
-        return ris_fail(err, RIS_ERROR_DEVICE, "this risorius was built without Vulkan (RISORIUS_VULKAN=OFF); say "
-                                               "--device cpu to simulate on the CPU");
+        return ris_fail(err, RIS_ERROR_DEVICE,
+                        "this risorius was built without Vulkan (RISORIUS_VULKAN=OFF); say "
+                        "--device cpu to simulate on the CPU");
     }
     return RIS_OK;
 }
@@ -93,10 +95,12 @@ ris_result backend_start(ris_backend *backend, const ris_cli *cli, const backend
     if (r || !need->sim) {
         return r;
     }
-    return backend_is_cpu(cli) ? ris_sim_create_cpu(backend->model, &backend->sim, err) : open_vulkan_sim(backend, err);
+    return backend_is_cpu(cli) ? ris_sim_create_cpu(backend->model, &backend->sim, err)
+                               : open_vulkan_sim(backend, err);
 }
 
-ris_result backend_open(ris_backend *out, const ris_cli *cli, const char *head, const backend_need *need, ris_error *err)
+ris_result backend_open(ris_backend *out, const ris_cli *cli, const char *head, const backend_need *need,
+                        ris_error *err)
 {
     ris_result r = backend_load(out, head, err);
     return r ? r : backend_start(out, cli, need, err);

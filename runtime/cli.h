@@ -19,10 +19,12 @@ typedef struct cli_command {
     const char *usage; /* what follows the name: "HEAD (--clip C | --pose P) -o OUT" */
     const char *summary;
     const char *detail; /* more help, may be NULL */
-    ris_result (*run)(ris_cli *cli, int argc, char **argv, ris_error *err); /* argv[0] is the command's name */
+    ris_result (*run)(ris_cli *cli, int argc, char **argv,
+                      ris_error *err); /* argv[0] is the command's name */
 } cli_command;
 
-extern const cli_command cmd_devices, cmd_info, cmd_render, cmd_export, cmd_compare, cmd_bench, cmd_validate, cmd_view;
+extern const cli_command cmd_devices, cmd_info, cmd_render, cmd_export, cmd_compare, cmd_bench, cmd_validate,
+    cmd_view;
 
 #define CLI_LIST_SIZE 8
 
@@ -46,8 +48,9 @@ typedef struct cli_option {
 /* Reads argv[1..] by the command's options and the global ones; other words go to positional (at most
  * positional_capacity, *out_count of them). Answers --help on stdout and sets cli->done.
  * RIS_ERROR_USAGE for an unknown option (with the nearest), a missing value, too many words. */
-ris_result cli_parse(ris_cli *cli, const cli_command *command, const cli_option *options, int argc, char **argv,
-                     const char **positional, uint32_t positional_capacity, uint32_t *out_count, ris_error *err);
+ris_result cli_parse(ris_cli *cli, const cli_command *command, const cli_option *options, int argc,
+                     char **argv, const char **positional, uint32_t positional_capacity, uint32_t *out_count,
+                     ris_error *err);
 
 /* Reads leading global options of argv[*index..] before the command's name; stops at the first other word. */
 ris_result cli_parse_global(ris_cli *cli, int argc, char **argv, int *index, ris_error *err);
@@ -56,11 +59,13 @@ ris_result cli_parse_global(ris_cli *cli, int argc, char **argv, int *index, ris
 ris_result cli_need_head(const cli_command *command, uint32_t count, ris_error *err);
 
 /* Numbers on the command line, C locale. RIS_ERROR_USAGE naming the option and the range. */
-ris_result cli_number(const char *option, const char *text, double minimum, double maximum, double *out, ris_error *err);
+ris_result cli_number(const char *option, const char *text, double minimum, double maximum, double *out,
+                      ris_error *err);
 ris_result cli_count(const char *option, const char *text, uint32_t minimum, uint32_t maximum, uint32_t *out,
                      ris_error *err);
 /* "WxH", each side 16..8192 pixels. */
-ris_result cli_size(const char *option, const char *text, uint32_t *out_width, uint32_t *out_height, ris_error *err);
+ris_result cli_size(const char *option, const char *text, uint32_t *out_width, uint32_t *out_height,
+                    ris_error *err);
 
 /* A progress line on stderr: a bar redrawn in place on a terminal, else a line every tenth; silent with -q. */
 typedef struct ris_progress {

@@ -81,7 +81,8 @@ static void take_sample(bench_run *bench, double frame_ms)
 static ris_result run_once(bench_run *bench, ris_sim *sim, bool measured, uint64_t *out_hash, ris_error *err)
 {
     float *pose = calloc(ris_sim_get_model(sim)->channel_count + 1u, sizeof *pose);
-    ris_result r = pose ? ris_sim_reset(sim, err) : ris_fail(err, RIS_ERROR_MEMORY, "out of memory for a pose");
+    ris_result r =
+        pose ? ris_sim_reset(sim, err) : ris_fail(err, RIS_ERROR_MEMORY, "out of memory for a pose");
     for (uint32_t i = 0; !r && i < bench->ticks; i++) {
         uint64_t start = ris__clock_ns();
         r = tick(bench, sim, i, pose, err);
@@ -137,7 +138,8 @@ static ris_result check_result(bench_run *bench, ris_error *err)
     if (!r && bench->hash != bench->reference_hash &&
         (needs_equal_bits(bench) || !(bench->difference_mm <= TOLERANCE_MM))) {
         r = ris_fail(err, RIS_ERROR_FAILED,
-                     "the result is wrong, so its times mean nothing: %s ends at %016llx, the CPU reference at %016llx, "
+                     "the result is wrong, so its times mean nothing: %s ends at %016llx, the CPU reference "
+                     "at %016llx, "
                      "%.3g mm apart",
                      ris_sim_backend(bench->backend.sim), (unsigned long long)bench->hash,
                      (unsigned long long)bench->reference_hash, bench->difference_mm);
@@ -153,13 +155,14 @@ static int compare_doubles(const void *a, const void *b)
 
 static void print_times(bench_run *bench, const ris_cli *cli, const bench_args *args)
 {
-    const char *format = cli->json ? "%s\n    {\"stage\": \"%s\", \"min_ms\": %.4f, \"median_ms\": %.4f}"
+    const char *format = cli->json   ? "%s\n    {\"stage\": \"%s\", \"min_ms\": %.4f, \"median_ms\": %.4f}"
                          : args->csv ? "%s%s,%.4f,%.4f\n"
                                      : "%s  %-14s %9.4f %9.4f\n";
     if (cli->json) {
         printf("  \"stages\": [");
     } else {
-        printf(args->csv ? "stage,min_ms,median_ms\n" : "  stage             min ms median ms   per frame of 1/60 s\n");
+        printf(args->csv ? "stage,min_ms,median_ms\n"
+                         : "  stage             min ms median ms   per frame of 1/60 s\n");
     }
     for (uint32_t c = 0; c < COLUMNS; c++) {
         double *sample = bench->sample[c];
@@ -173,8 +176,8 @@ static void print_times(bench_run *bench, const ris_cli *cli, const bench_args *
     } else if (args->csv) {
         printf("real_time_factor,%.3f,%.3f\n", 1000.0 * RIS_TICK_S / frame[0], 1000.0 * RIS_TICK_S / median);
     } else {
-        printf("  real-time factor at 60 frames a second: %.2f (median), %.2f (best)\n", 1000.0 * RIS_TICK_S / median,
-               1000.0 * RIS_TICK_S / frame[0]);
+        printf("  real-time factor at 60 frames a second: %.2f (median), %.2f (best)\n",
+               1000.0 * RIS_TICK_S / median, 1000.0 * RIS_TICK_S / frame[0]);
     }
 }
 
@@ -191,18 +194,23 @@ static void print_result(bench_run *bench, const ris_cli *cli, const bench_args 
         cli_json_string(stdout, clip);
         printf(",\n  \"device\": ");
         cli_json_string(stdout, ris_sim_backend(bench->backend.sim));
-        printf(",\n  \"moving_nodes\": %u,\n  \"springs\": %u,\n  \"substeps\": %u,\n  \"ticks\": %u,\n  \"repeats\": %u,\n",
-               model->moving_count, model->spring_count, model->head->tissue.substeps, bench->ticks, args->repeats);
+        printf(",\n  \"moving_nodes\": %u,\n  \"springs\": %u,\n  \"substeps\": %u,\n  \"ticks\": %u,\n  "
+               "\"repeats\": %u,\n",
+               model->moving_count, model->spring_count, model->head->tissue.substeps, bench->ticks,
+               args->repeats);
         printf("  \"hash\": \"%016llx\",\n  \"reference_hash\": \"%016llx\",\n  \"difference_mm\": %.9g,\n",
-               (unsigned long long)bench->hash, (unsigned long long)bench->reference_hash, bench->difference_mm);
+               (unsigned long long)bench->hash, (unsigned long long)bench->reference_hash,
+               bench->difference_mm);
     } else {
         const char *start = args->csv ? "# " : "";
-        printf("%s%s, %s: %u moving nodes, %u springs, %u substeps a frame, %u frames x %u repeats\n", start, head, clip,
-               model->moving_count, model->spring_count, model->head->tissue.substeps, bench->ticks, args->repeats);
-        printf("%sdevice %s%s%s\n", start, ris_sim_backend(bench->backend.sim), threads ? ", LP_NUM_THREADS=" : "",
-               threads ? threads : "");
+        printf("%s%s, %s: %u moving nodes, %u springs, %u substeps a frame, %u frames x %u repeats\n", start,
+               head, clip, model->moving_count, model->spring_count, model->head->tissue.substeps,
+               bench->ticks, args->repeats);
+        printf("%sdevice %s%s%s\n", start, ris_sim_backend(bench->backend.sim),
+               threads ? ", LP_NUM_THREADS=" : "", threads ? threads : "");
         printf("%shash %016llx, CPU reference %016llx: %s\n", start, (unsigned long long)bench->hash,
-               (unsigned long long)bench->reference_hash, bench->hash == bench->reference_hash ? "equal" : "within 0.01 mm");
+               (unsigned long long)bench->reference_hash,
+               bench->hash == bench->reference_hash ? "equal" : "within 0.01 mm");
     }
     print_times(bench, cli, args);
 }
@@ -215,7 +223,9 @@ static ris_result open_clip(bench_run *bench, const bench_args *args, ris_error 
     if (args->clip) {
         snprintf(bench->clip_path, sizeof bench->clip_path, "%s", args->clip);
     } else {
-        int length = args->head ? snprintf(bench->clip_path, sizeof bench->clip_path, "%s/../clips/first_light.json", args->head) : 0;
+        int length = args->head ? snprintf(bench->clip_path, sizeof bench->clip_path,
+                                           "%s/../clips/first_light.json", args->head)
+                                : 0;
         if (length <= 0 || (size_t)length >= sizeof bench->clip_path || access(bench->clip_path, R_OK) != 0) {
             return RIS_OK;
         }
@@ -285,7 +295,8 @@ static ris_result run(ris_cli *cli, int argc, char **argv, ris_error *err)
 {
     bench_args args = {.repeats = 5};
     const cli_option options[] = {
-        {"clip", 'c', "CLIP", "the clip to run (HEAD/../clips/first_light.json, or an excitation of all muscles)", NULL,
+        {"clip", 'c', "CLIP",
+         "the clip to run (HEAD/../clips/first_light.json, or an excitation of all muscles)", NULL,
          &args.clip, NULL},
         {"repeat", 'n', "N", "measured repeats after one to warm up (5)", NULL, &args.repeat_text, NULL},
         {"csv", 0, NULL, "print the times as CSV", &args.csv, NULL, NULL},
@@ -321,7 +332,9 @@ const cli_command cmd_bench = {
     .name = "bench",
     .usage = "[HEAD] [--clip C] [--repeat N] [--csv]",
     .summary = "measure the cost of a frame, stage by stage, after checking the result",
-    .detail = "Rows: muscle (host stages), upload, the device stages by GPU timestamps (all substeps of a frame), wait\n"
-              "(record, submit and fence wait; contains the device stages), frame (everything, by the clock).\n",
+    .detail =
+        "Rows: muscle (host stages), upload, the device stages by GPU timestamps (all substeps of a frame), "
+        "wait\n"
+        "(record, submit and fence wait; contains the device stages), frame (everything, by the clock).\n",
     .run = run,
 };

@@ -44,17 +44,20 @@ static uint64_t differing_words(const ris_compare_report *report)
 static void print_text(const ris_compare_report *report)
 {
     printf("A  %s\nB  %s\n", report->backend[0], report->backend[1]);
-    printf("%u nodes, %u simulated, %u moved by 2 mm or more; %u frames of %u substeps\n\n", report->node_count,
-           report->moving_count, report->moved_count, report->tick_count, report->substeps);
+    printf("%u nodes, %u simulated, %u moved by 2 mm or more; %u frames of %u substeps\n\n",
+           report->node_count, report->moving_count, report->moved_count, report->tick_count,
+           report->substeps);
     printf("                        after one step, from equal states              over the whole clip\n");
     printf("  stage                max mm       rms mm      words         max mm       rms mm      words\n");
     for (int s = 0; s < RIS_STAGE_COUNT; s++) {
         print_stage_line(ris_stage_name((ris_stage)s), &report->step[s], &report->clip[s]);
     }
-    printf("\nhash A %016llx\nhash B %016llx\n", (unsigned long long)report->hash[0], (unsigned long long)report->hash[1]);
+    printf("\nhash A %016llx\nhash B %016llx\n", (unsigned long long)report->hash[0],
+           (unsigned long long)report->hash[1]);
     if (report->differs) {
-        printf("first difference: stage %s, frame %u, substep %u, vertex %u\n", ris_stage_name(report->first_stage),
-               report->first_tick, report->first_substep, report->first_vertex);
+        printf("first difference: stage %s, frame %u, substep %u, vertex %u\n",
+               ris_stage_name(report->first_stage), report->first_tick, report->first_substep,
+               report->first_vertex);
         printf("GPU and CPU differ: %llu words over the clip, %llu of %u frames\n",
                (unsigned long long)differing_words(report), (unsigned long long)report->differing_ticks,
                report->tick_count);
@@ -67,8 +70,9 @@ static void print_json_stages(const char *name, const ris_compare_stage *stage)
 {
     printf("  \"%s\": {", name);
     for (int s = 0; s < RIS_STAGE_COUNT; s++) {
-        printf("%s\n    \"%s\": {\"max_mm\": %.9g, \"rms_mm\": %.9g, \"differing_words\": %llu}", s ? "," : "",
-               ris_stage_name((ris_stage)s), stage[s].max_mm, stage[s].rms_mm, (unsigned long long)stage[s].differing_words);
+        printf("%s\n    \"%s\": {\"max_mm\": %.9g, \"rms_mm\": %.9g, \"differing_words\": %llu}",
+               s ? "," : "", ris_stage_name((ris_stage)s), stage[s].max_mm, stage[s].rms_mm,
+               (unsigned long long)stage[s].differing_words);
     }
     printf("\n  },\n");
 }
@@ -79,21 +83,25 @@ static void print_json(const ris_compare_report *report)
     cli_json_string(stdout, report->backend[0]);
     printf(", ");
     cli_json_string(stdout, report->backend[1]);
-    printf("],\n  \"nodes\": %u,\n  \"moving_nodes\": %u,\n  \"moved_nodes\": %u,\n  \"frames\": %u,\n  \"substeps\": %u,\n",
-           report->node_count, report->moving_count, report->moved_count, report->tick_count, report->substeps);
+    printf("],\n  \"nodes\": %u,\n  \"moving_nodes\": %u,\n  \"moved_nodes\": %u,\n  \"frames\": %u,\n  "
+           "\"substeps\": %u,\n",
+           report->node_count, report->moving_count, report->moved_count, report->tick_count,
+           report->substeps);
     print_json_stages("step", report->step);
     print_json_stages("clip", report->clip);
-    printf("  \"hash\": [\"%016llx\", \"%016llx\"],\n  \"differing_frames\": %llu,\n", (unsigned long long)report->hash[0],
-           (unsigned long long)report->hash[1], (unsigned long long)report->differing_ticks);
+    printf("  \"hash\": [\"%016llx\", \"%016llx\"],\n  \"differing_frames\": %llu,\n",
+           (unsigned long long)report->hash[0], (unsigned long long)report->hash[1],
+           (unsigned long long)report->differing_ticks);
     if (report->differs) {
         printf("  \"first\": {\"stage\": \"%s\", \"frame\": %u, \"substep\": %u, \"vertex\": %u},\n",
-               ris_stage_name(report->first_stage), report->first_tick, report->first_substep, report->first_vertex);
+               ris_stage_name(report->first_stage), report->first_tick, report->first_substep,
+               report->first_vertex);
     }
     printf("  \"equal\": %s\n}\n", report->differs ? "false" : "true");
 }
 
-static ris_result compare(const ris_cli *cli, const compare_args *args, ris_backend *backend, ris_sim *reference,
-                          ris_error *err)
+static ris_result compare(const ris_cli *cli, const compare_args *args, ris_backend *backend,
+                          ris_sim *reference, ris_error *err)
 {
     ris_clip *clip = NULL;
     ris_result r = ris_clip_load(backend->model, args->clip, &clip, err);
@@ -127,10 +135,13 @@ static ris_result check_args(const ris_cli *cli, compare_args *args, ris_error *
         return ris_fail(err, RIS_ERROR_USAGE, "compare needs --clip C");
     }
     if (backend_is_cpu(cli)) {
-        return ris_fail(err, RIS_ERROR_USAGE, "compare sets a Vulkan device against the CPU reference; the CPU against "
-                                              "itself would prove nothing");
+        return ris_fail(err, RIS_ERROR_USAGE,
+                        "compare sets a Vulkan device against the CPU reference; the CPU against "
+                        "itself would prove nothing");
     }
-    return args->tolerance_text ? cli_number("tolerance", args->tolerance_text, 0, 1000, &args->tolerance_mm, err) : RIS_OK;
+    return args->tolerance_text
+               ? cli_number("tolerance", args->tolerance_text, 0, 1000, &args->tolerance_mm, err)
+               : RIS_OK;
 }
 
 static ris_result run(ris_cli *cli, int argc, char **argv, ris_error *err)
@@ -139,8 +150,8 @@ static ris_result run(ris_cli *cli, int argc, char **argv, ris_error *err)
     const cli_option options[] = {
         {"clip", 'c', "CLIP", "the clip to run on both sides", NULL, &args.clip, NULL},
         {"tolerance", 0, "MM",
-         "allowed difference; without it 0 bits on lavapipe, else 1e-4 mm a step and 1e-2 mm over the clip", NULL,
-         &args.tolerance_text, NULL},
+         "allowed difference; without it 0 bits on lavapipe, else 1e-4 mm a step and 1e-2 mm over the clip",
+         NULL, &args.tolerance_text, NULL},
         {0},
     };
     uint32_t count;
@@ -173,7 +184,9 @@ const cli_command cmd_compare = {
     .name = "compare",
     .usage = "HEAD --clip C [--tolerance MM]",
     .summary = "run a clip on a Vulkan device and on the CPU reference and compare every stage",
-    .detail = "Exit code 1 names the stage, frame, substep and vertex over tolerance. Words are 32-bit numbers that differ\n"
-              "in any bit. A clip that moves fewer than 500 nodes by 2 mm is refused: it would prove too little.\n",
+    .detail =
+        "Exit code 1 names the stage, frame, substep and vertex over tolerance. Words are 32-bit numbers "
+        "that differ\n"
+        "in any bit. A clip that moves fewer than 500 nodes by 2 mm is refused: it would prove too little.\n",
     .run = run,
 };

@@ -12,16 +12,16 @@ static void print_device(const ris_cli *cli, const ris_device_info *info, uint32
 {
     uint32_t major = info->api_version >> 22 & 0x7fu, minor = info->api_version >> 12 & 0x3ffu;
     if (!cli->json) {
-        printf("%-5u %s (%s), %s, Vulkan %u.%u%s%s\n", index, info->name, info->type, info->driver, major, minor,
-               info->usable ? "" : ": not usable, lacks ", info->usable ? "" : info->missing);
+        printf("%-5u %s (%s), %s, Vulkan %u.%u%s%s\n", index, info->name, info->type, info->driver, major,
+               minor, info->usable ? "" : ": not usable, lacks ", info->usable ? "" : info->missing);
         return;
     }
     printf(",\n  {\"select\": \"%u\", \"name\": ", index);
     cli_json_string(stdout, info->name);
     printf(", \"driver\": ");
     cli_json_string(stdout, info->driver);
-    printf(", \"type\": \"%s\", \"vulkan\": \"%u.%u\", \"usable\": %s, \"missing\": ", info->type, major, minor,
-           info->usable ? "true" : "false");
+    printf(", \"type\": \"%s\", \"vulkan\": \"%u.%u\", \"usable\": %s, \"missing\": ", info->type, major,
+           minor, info->usable ? "true" : "false");
     cli_json_string(stdout, info->missing);
     printf("}");
 }
@@ -39,8 +39,9 @@ static ris_result print_vulkan(const ris_cli *cli, ris_error *err)
     }
     free(info);
     if (!r && count == 0) {
-        r = ris_fail(err, RIS_ERROR_DEVICE, "there is no Vulkan device on this machine (Debian: apt install "
-                                            "mesa-vulkan-drivers); --device cpu runs the reference");
+        r = ris_fail(err, RIS_ERROR_DEVICE,
+                     "there is no Vulkan device on this machine (Debian: apt install "
+                     "mesa-vulkan-drivers); --device cpu runs the reference");
     }
     return r;
 }
@@ -63,8 +64,9 @@ static ris_result run(ris_cli *cli, int argc, char **argv, ris_error *err)
     if (r || cli->done) {
         return r;
     }
-    printf(cli->json ? "{\"devices\": [\n  {\"select\": \"cpu\", \"name\": \"CPU reference\", \"usable\": true}"
-                     : "cpu   CPU reference\n");
+    printf(cli->json
+               ? "{\"devices\": [\n  {\"select\": \"cpu\", \"name\": \"CPU reference\", \"usable\": true}"
+               : "cpu   CPU reference\n");
     r = print_vulkan(cli, err);
     if (cli->json) {
         printf("\n]}\n");

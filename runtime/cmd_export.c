@@ -104,7 +104,8 @@ static ris_result run(ris_cli *cli, int argc, char **argv, ris_error *err)
 {
     export_args args = {0};
     const cli_option options[] = {
-        {"pose", 'p', "POSE", "name=value[,name=value...]; without it the neutral head at rest", NULL, &args.pose, NULL},
+        {"pose", 'p', "POSE", "name=value[,name=value...]; without it the neutral head at rest", NULL,
+         &args.pose, NULL},
         {"clip", 'c', "CLIP", "a clip, stopped at --at", NULL, &args.clip, NULL},
         {"at", 't', "SECONDS", "the moment of the clip", NULL, &args.at, NULL},
         {"output", 'o', "FILE.obj", "the file to write", NULL, &args.out, NULL},
@@ -142,7 +143,9 @@ const cli_command cmd_export = {
     .name = "export",
     .usage = "HEAD [--pose P | --clip C --at T] -o FILE.obj [--parts]",
     .summary = "write the skin of a held pose or of a moment of a clip as OBJ",
-    .detail = "A pose is held until no vertex is faster than 0.1 mm/s for 0.25 s of simulated time; if that is not\n"
-              "reached in 20 s the command fails and names the vertex. Vertices keep the order of skin.obj, in mm.\n",
+    .detail = "A pose is held until no vertex is faster than 0.1 mm/s for 0.25 s of simulated time; if that "
+              "is not\n"
+              "reached in 20 s the command fails and names the vertex. Vertices keep the order of skin.obj, "
+              "in mm.\n",
     .run = run,
 };

@@ -25,16 +25,17 @@ static void print_text(const char *path, const ris_model *model)
            head->skin.face_count, model->triangle_count, head->skin.uv_count);
     printf("simulated   %u moving nodes (region '%s'), %u springs\n", model->moving_count, head->simulated,
            model->spring_count);
-    printf("tissue      %s, node mass %.4g g, %u substeps of %.4f ms, stable up to %.4f ms\n", tissue_name(model),
-           (double)model->mass_g, tissue->substeps, dt_ms, (double)model->stable_dt_s * 1000.0);
-    printf("rig         %u muscles, %u fibres, %u control points, %u constraint groups\n", model->muscle_count,
-           model->fiber_count, model->fiber_point_count, model->group_count);
+    printf("tissue      %s, node mass %.4g g, %u substeps of %.4f ms, stable up to %.4f ms\n",
+           tissue_name(model), (double)model->mass_g, tissue->substeps, dt_ms,
+           (double)model->stable_dt_s * 1000.0);
+    printf("rig         %u muscles, %u fibres, %u control points, %u constraint groups\n",
+           model->muscle_count, model->fiber_count, model->fiber_point_count, model->group_count);
     printf("muscles\n");
     for (uint32_t i = 0; i < model->muscle_count; i++) {
         const ris_muscle *m = &model->muscle[i];
-        printf("  %-32s %-9s on %-6s %2u fibres x %2u points, shortens to %2.0f %%, acts on %u nodes\n", m->name,
-               m->kind == RIS_MUSCLE_LINEAR ? "linear" : "sphincter", m->on_jaw ? "jaw" : "skull", m->fiber_count,
-               m->point_count, (double)m->max_shortening * 100.0, muscle_nodes(model, i));
+        printf("  %-32s %-9s on %-6s %2u fibres x %2u points, shortens to %2.0f %%, acts on %u nodes\n",
+               m->name, m->kind == RIS_MUSCLE_LINEAR ? "linear" : "sphincter", m->on_jaw ? "jaw" : "skull",
+               m->fiber_count, m->point_count, (double)m->max_shortening * 100.0, muscle_nodes(model, i));
     }
     printf("channels\n");
     for (uint32_t i = model->muscle_count; i < model->channel_count; i++) {
@@ -64,10 +65,11 @@ static void print_json_muscles(const ris_model *model)
         const ris_muscle *m = &model->muscle[i];
         printf("%s\n    {\"name\": ", i ? "," : "");
         cli_json_string(stdout, m->name);
-        printf(", \"kind\": \"%s\", \"bone\": \"%s\", \"fibers\": %u, \"points\": %u, \"max_shortening\": %.6g, "
-               "\"nodes\": %u}",
-               m->kind == RIS_MUSCLE_LINEAR ? "linear" : "sphincter", m->on_jaw ? "jaw" : "skull", m->fiber_count,
-               m->point_count, (double)m->max_shortening, muscle_nodes(model, i));
+        printf(
+            ", \"kind\": \"%s\", \"bone\": \"%s\", \"fibers\": %u, \"points\": %u, \"max_shortening\": %.6g, "
+            "\"nodes\": %u}",
+            m->kind == RIS_MUSCLE_LINEAR ? "linear" : "sphincter", m->on_jaw ? "jaw" : "skull",
+            m->fiber_count, m->point_count, (double)m->max_shortening, muscle_nodes(model, i));
     }
     printf("\n  ],\n  \"channels\": [");
     for (uint32_t i = 0; i < model->channel_count; i++) {
@@ -84,8 +86,8 @@ static void print_json(const char *path, const ris_model *model)
     const ris_head *head = model->head;
     printf("{\n  \"head\": ");
     cli_json_string(stdout, path);
-    printf(",\n  \"vertices\": %u,\n  \"faces\": %u,\n  \"triangles\": %u,\n  \"uvs\": %u,\n", model->node_count,
-           head->skin.face_count, model->triangle_count, head->skin.uv_count);
+    printf(",\n  \"vertices\": %u,\n  \"faces\": %u,\n  \"triangles\": %u,\n  \"uvs\": %u,\n",
+           model->node_count, head->skin.face_count, model->triangle_count, head->skin.uv_count);
     printf("  \"moving_nodes\": %u,\n  \"springs\": %u,\n  \"tissue\": \"%s\",\n  \"node_mass_g\": %.9g,\n",
            model->moving_count, model->spring_count, tissue_name(model), (double)model->mass_g);
     printf("  \"substeps\": %u,\n  \"dt_s\": %.9g,\n  \"stable_dt_s\": %.9g,\n", head->tissue.substeps,

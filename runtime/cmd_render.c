@@ -48,14 +48,16 @@ static ris_result check_outputs(render_job *render, ris_error *err)
     }
     bool still = args->out.count > 0 && !moving;
     if (args->clip && still && !args->at) {
-        return ris_fail(err, RIS_ERROR_USAGE, "one picture of a clip needs --at SECONDS (or -o DIR/%%04d.png for all)");
+        return ris_fail(err, RIS_ERROR_USAGE,
+                        "one picture of a clip needs --at SECONDS (or -o DIR/%%04d.png for all)");
     }
     if (args->at && (!args->clip || !still)) {
         return ris_fail(err, RIS_ERROR_USAGE, "--at is for one picture (-o FILE.png) of a clip");
     }
     for (uint32_t i = 0; moving && i < args->out.count; i++) {
         if (render->out[i].kind == RENDER_PNG) {
-            return ris_fail(err, RIS_ERROR_USAGE, "-o: '%s' is one picture, the other outputs are many", render->out[i].path);
+            return ris_fail(err, RIS_ERROR_USAGE, "-o: '%s' is one picture, the other outputs are many",
+                            render->out[i].path);
         }
     }
     render->settles = args->pose && still;
@@ -67,15 +69,18 @@ static ris_result check_args(render_job *render, ris_error *err)
 {
     const render_args *args = render->args;
     if (!args->clip == !args->pose) {
-        return ris_fail(err, RIS_ERROR_USAGE, "render needs --clip C or --pose P%s", args->clip ? ", not both" : "");
+        return ris_fail(err, RIS_ERROR_USAGE, "render needs --clip C or --pose P%s",
+                        args->clip ? ", not both" : "");
     }
     if (args->out.count == 0 && !args->contact) {
         return ris_fail(err, RIS_ERROR_USAGE, "render needs -o OUT.mp4, OUT.png, DIR/%%04d.png or OUT.pc2");
     }
     if (args->contact && (!args->clip || args->at)) {
-        return ris_fail(err, RIS_ERROR_USAGE, "--contact shows the key poses of a whole clip: it needs --clip, without --at");
+        return ris_fail(err, RIS_ERROR_USAGE,
+                        "--contact shows the key poses of a whole clip: it needs --clip, without --at");
     }
-    ris_result r = cli_size("size", args->size ? args->size : "640x720", &render->width, &render->height, err);
+    ris_result r =
+        cli_size("size", args->size ? args->size : "640x720", &render->width, &render->height, err);
     if (!r) {
         r = cli_count("fps", args->fps_text ? args->fps_text : "60", 1, 240, &render->fps, err);
     }
@@ -87,8 +92,8 @@ static ris_result check_args(render_job *render, ris_error *err)
         r = cli_number("at", args->at, 0, 86400, &render->at_s, err);
     }
     if (!r && (uint64_t)render->width * render->views.count > 16384u) {
-        r = ris_fail(err, RIS_ERROR_USAGE, "--size: %u views of %u pixels are wider than 16384", render->views.count,
-                     render->width);
+        r = ris_fail(err, RIS_ERROR_USAGE, "--size: %u views of %u pixels are wider than 16384",
+                     render->views.count, render->width);
     }
     if (!r) {
         r = check_outputs(render, err);
@@ -110,7 +115,8 @@ static ris_result open_motion(render_job *render, ris_error *err)
         r = ris_fail(err, RIS_ERROR_USAGE, "--at: the clip ends at %g s", ris_clip_duration_s(render->clip));
     }
     if (!r && render->clip && ris_clip_duration_s(render->clip) * render->fps > 1e6) {
-        r = ris_fail(err, RIS_ERROR_USAGE, "a clip of %g s at %u frames a second is more than a million frames",
+        r = ris_fail(err, RIS_ERROR_USAGE,
+                     "a clip of %g s at %u frames a second is more than a million frames",
                      ris_clip_duration_s(render->clip), render->fps);
     }
     if (!r) {
@@ -123,7 +129,8 @@ static ris_result open_render(render_job *render, const ris_cli *cli, ris_error 
 {
     const render_args *args = render->args;
     bool draws = render->draws || args->contact;
-    ris_result r = backend_open(&render->backend, cli, args->head, &(backend_need){.sim = true, .draw = draws}, err);
+    ris_result r =
+        backend_open(&render->backend, cli, args->head, &(backend_need){.sim = true, .draw = draws}, err);
     if (!r) {
         r = open_motion(render, err);
     }
@@ -266,11 +273,13 @@ static ris_result run(ris_cli *cli, int argc, char **argv, ris_error *err)
     const cli_option options[] = {
         {"clip", 'c', "CLIP", "the clip to play", NULL, &args.clip, NULL},
         {"pose", 'p', "POSE", "the pose to hold: name=value[,name=value...]", NULL, &args.pose, NULL},
-        {"output", 'o', "FILE", "OUT.mp4, OUT.png, DIR/%04d.png or OUT.pc2; may be repeated", NULL, NULL, &args.out},
+        {"output", 'o', "FILE", "OUT.mp4, OUT.png, DIR/%04d.png or OUT.pc2; may be repeated", NULL, NULL,
+         &args.out},
         {"contact", 0, "FILE.png", "a labelled sheet of the clip's key poses", NULL, &args.contact, NULL},
         {"at", 't', "SECONDS", "the moment of one picture of a clip", NULL, &args.at, NULL},
         {"size", 's', "WxH", "size of one view in pixels (640x720)", NULL, &args.size, NULL},
-        {"fps", 0, "N", "frames a second (60); the simulation ticks at 60 whatever it is", NULL, &args.fps_text, NULL},
+        {"fps", 0, "N", "frames a second (60); the simulation ticks at 60 whatever it is", NULL,
+         &args.fps_text, NULL},
         {"view", 0, "LIST", "front, 34, profile; several stand side by side (front)", NULL, &args.view, NULL},
         {"wireframe", 'w', NULL, "draw edges", &args.wireframe, NULL, NULL},
         {0},

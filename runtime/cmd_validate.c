@@ -37,8 +37,9 @@ static ris_result check_parity(const ris_backend *backend, ris_sim *reference, c
     def.moved_minimum = 0;
     ris_result r = ris_compare_run(&def, &report, err);
     out->verdict = r ? "FAILED" : report.differs ? "within tolerance" : "equal";
-    snprintf(out->detail, sizeof out->detail, "%u nodes, %u frames of %u substeps, hash %016llx and %016llx", report.node_count,
-             report.tick_count, report.substeps, (unsigned long long)report.hash[0], (unsigned long long)report.hash[1]);
+    snprintf(out->detail, sizeof out->detail, "%u nodes, %u frames of %u substeps, hash %016llx and %016llx",
+             report.node_count, report.tick_count, report.substeps, (unsigned long long)report.hash[0],
+             (unsigned long long)report.hash[1]);
     return r;
 }
 
@@ -54,7 +55,8 @@ static ris_result check_picture(const ris_backend *backend, check *out, ris_erro
     uint32_t different = 0;
     ris_result r = rgba ? RIS_OK : ris_fail(err, RIS_ERROR_MEMORY, "out of memory for a picture");
     if (!r) {
-        r = ris_draw_create(backend->device, backend->model, &(ris_draw_def){.width = SIDE, .height = SIDE}, &draw, err);
+        r = ris_draw_create(backend->device, backend->model, &(ris_draw_def){.width = SIDE, .height = SIDE},
+                            &draw, err);
     }
     if (!r) {
         r = ris_draw_frame(draw, backend->sim, &camera, err);
@@ -63,10 +65,12 @@ static ris_result check_picture(const ris_backend *backend, check *out, ris_erro
         r = ris_draw_read(draw, rgba, err);
     }
     for (uint32_t i = 0; !r && i < SIDE * SIDE; i++) {
-        different += abs(rgba[i * 4] - rgba[0]) + abs(rgba[i * 4 + 1] - rgba[1]) + abs(rgba[i * 4 + 2] - rgba[2]) > 60;
+        different +=
+            abs(rgba[i * 4] - rgba[0]) + abs(rgba[i * 4 + 1] - rgba[1]) + abs(rgba[i * 4 + 2] - rgba[2]) > 60;
     }
     if (!r && different < SIDE * SIDE / 20) {
-        r = ris_fail(err, RIS_ERROR_FAILED, "the trial picture is blank: only %u of %u pixels differ from its corner", different,
+        r = ris_fail(err, RIS_ERROR_FAILED,
+                     "the trial picture is blank: only %u of %u pixels differ from its corner", different,
                      SIDE * SIDE);
     }
     out->verdict = r ? "FAILED" : "drawn";
@@ -87,7 +91,8 @@ static ris_result check_messages(const ris_backend *backend, check *out, ris_err
     }
     out->verdict = count ? "FAILED" : "silent";
     snprintf(out->detail, sizeof out->detail, "%u messages, synchronization validation on", count);
-    return count ? ris_fail(err, RIS_ERROR_FAILED, "the validation layer has %u messages, the first: %.600s", count, first)
+    return count ? ris_fail(err, RIS_ERROR_FAILED, "the validation layer has %u messages, the first: %.600s",
+                            count, first)
                  : RIS_OK;
 }
 
@@ -112,7 +117,8 @@ static void print_checks(const ris_cli *cli, const check *checks, uint32_t count
     }
     for (uint32_t i = 0; i < count; i++) {
         if (cli->json) {
-            printf("%s\n  {\"name\": \"%s\", \"verdict\": \"%s\", \"detail\": ", i ? "," : "", checks[i].name, checks[i].verdict);
+            printf("%s\n  {\"name\": \"%s\", \"verdict\": \"%s\", \"detail\": ", i ? "," : "", checks[i].name,
+                   checks[i].verdict);
             cli_json_string(stdout, checks[i].detail);
             printf("}");
         } else {
@@ -124,7 +130,8 @@ static void print_checks(const ris_cli *cli, const check *checks, uint32_t count
 
 static ris_result run_checks(const ris_cli *cli, ris_backend *backend, ris_sim *reference, ris_error *err)
 {
-    check checks[4] = {{.name = "device", .verdict = "usable"}, {.name = "parity"}, {.name = "picture"}, {.name = "layer"}};
+    check checks[4] = {
+        {.name = "device", .verdict = "usable"}, {.name = "parity"}, {.name = "picture"}, {.name = "layer"}};
     snprintf(checks[0].detail, sizeof checks[0].detail, "%s", ris_sim_backend(backend->sim));
     uint32_t done = 2;
     ris_result r = check_parity(backend, reference, &checks[1], err);
@@ -149,8 +156,9 @@ static ris_result run(ris_cli *cli, int argc, char **argv, ris_error *err)
         return r;
     }
     if (backend_is_cpu(cli)) {
-        return ris_fail(err, RIS_ERROR_USAGE, "validate checks a Vulkan device against the CPU; --device cpu leaves nothing to "
-                                              "check");
+        return ris_fail(err, RIS_ERROR_USAGE,
+                        "validate checks a Vulkan device against the CPU; --device cpu leaves nothing to "
+                        "check");
     }
     ris_backend backend = {0};
     ris_sim *reference = NULL;

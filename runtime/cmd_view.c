@@ -89,7 +89,8 @@ static void on_cursor(GLFWwindow *window, double x, double y)
     v->cursor_y = y;
     glfwGetWindowSize(window, &width, &height);
     bool left = glfwGetMouseButton(window, GLFW_MOUSE_BUTTON_LEFT) == GLFW_PRESS;
-    bool shift = glfwGetKey(window, GLFW_KEY_LEFT_SHIFT) == GLFW_PRESS || glfwGetKey(window, GLFW_KEY_RIGHT_SHIFT) == GLFW_PRESS;
+    bool shift = glfwGetKey(window, GLFW_KEY_LEFT_SHIFT) == GLFW_PRESS ||
+                 glfwGetKey(window, GLFW_KEY_RIGHT_SHIFT) == GLFW_PRESS;
     bool other = glfwGetMouseButton(window, GLFW_MOUSE_BUTTON_MIDDLE) == GLFW_PRESS ||
                  glfwGetMouseButton(window, GLFW_MOUSE_BUTTON_RIGHT) == GLFW_PRESS;
     if (height <= 0) {
@@ -144,7 +145,8 @@ static ris_result open_surface(view_state *view, ris_error *err)
     if (glfwCreateWindowSurface(instance, view->window, NULL, &surface) != VK_SUCCESS) {
         return window_fail("cannot make a Vulkan surface for the window", err);
     }
-    return ris_window_create(view->backend.device, (uint64_t)surface, view->width, view->height, &view->surface, err);
+    return ris_window_create(view->backend.device, (uint64_t)surface, view->width, view->height,
+                             &view->surface, err);
 }
 
 static ris_result open_motion(view_state *view, const view_args *args, ris_error *err)
@@ -173,8 +175,10 @@ static ris_result open_view(view_state *view, const ris_cli *cli, const view_arg
     if (!extensions) {
         return window_fail("Vulkan cannot draw into windows here", err);
     }
-    const backend_need need = {
-        .sim = true, .draw = true, .instance_extensions = extensions, .instance_extension_count = extension_count};
+    const backend_need need = {.sim = true,
+                               .draw = true,
+                               .instance_extensions = extensions,
+                               .instance_extension_count = extension_count};
     ris_result r = backend_open(&view->backend, cli, args->head, &need, err);
     if (!r) {
         r = open_motion(view, args, err);
@@ -251,7 +255,8 @@ static ris_result show(view_state *view, ris_error *err)
         glfwWaitEventsTimeout(0.1);
         return RIS_OK;
     }
-    uint32_t w = width < SIDE_MAX ? (uint32_t)width : SIDE_MAX, h = height < SIDE_MAX ? (uint32_t)height : SIDE_MAX;
+    uint32_t w = width < SIDE_MAX ? (uint32_t)width : SIDE_MAX,
+             h = height < SIDE_MAX ? (uint32_t)height : SIDE_MAX;
     ris_result r = RIS_OK;
     if (w != view->width || h != view->height) {
         r = ris_draw_resize(view->draw, w, h, err);
@@ -312,8 +317,8 @@ static ris_result loop(view_state *view, const view_args *args, ris_error *err)
         }
         if (args->frames == 0) {
             wait_for_frame(now);
-            while (!r && !view->playing && !view->stale && !view->step && !view->step_back && !view->restart &&
-                   !glfwWindowShouldClose(view->window) && !interrupt_seen()) {
+            while (!r && !view->playing && !view->stale && !view->step && !view->step_back &&
+                   !view->restart && !glfwWindowShouldClose(view->window) && !interrupt_seen()) {
                 glfwWaitEventsTimeout(0.25);
                 last = ris__clock_ns();
             }

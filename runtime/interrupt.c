@@ -34,5 +34,6 @@ bool interrupt_seen(void)
 
 ris_result interrupt_check(ris_error *err)
 {
-    return interrupted ? ris_fail(err, RIS_ERROR_FAILED, "interrupted; unfinished output was removed") : RIS_OK;
+    return interrupted ? ris_fail(err, RIS_ERROR_FAILED, "interrupted; unfinished output was removed")
+                       : RIS_OK;
 }

@@ -13,8 +13,9 @@
 #define PATH_MAX 4096
 #endif
 
-static const cli_command *const commands[] = {&cmd_devices, &cmd_info,  &cmd_view,     &cmd_render, &cmd_export,
-                                              &cmd_compare, &cmd_bench, &cmd_validate, NULL};
+static const cli_command *const commands[] = {&cmd_devices, &cmd_info,     &cmd_view,
+                                              &cmd_render,  &cmd_export,   &cmd_compare,
+                                              &cmd_bench,   &cmd_validate, NULL};
 
 /* Programs of this project that are found as risorius-<verb>. */
 static const struct {
@@ -26,7 +27,9 @@ static const struct {
 
 static void print_overview(FILE *out)
 {
-    fprintf(out, "Risorius %s: an anatomical face engine on Vulkan.\n\nusage: risorius [--device D] [-q] [-v] COMMAND ...\n\n",
+    fprintf(out,
+            "Risorius %s: an anatomical face engine on Vulkan.\n\nusage: risorius [--device D] [-q] [-v] "
+            "COMMAND ...\n\n",
             RIS_VERSION_STRING);
     for (uint32_t i = 0; commands[i]; i++) {
         fprintf(out, "  %-12s %s\n", commands[i]->name, commands[i]->summary);
@@ -35,8 +38,10 @@ static void print_overview(FILE *out)
     for (size_t i = 0; i < sizeof programs / sizeof programs[0]; i++) {
         fprintf(out, "  %-12s %s\n", programs[i].verb, programs[i].summary);
     }
-    fprintf(out, "\n`risorius COMMAND --help` tells the rest. Exit codes: 0 done, 1 failed, 2 wrong command line,\n"
-                 "3 bad data in a file, 4 no usable device.\n");
+    fprintf(
+        out,
+        "\n`risorius COMMAND --help` tells the rest. Exit codes: 0 done, 1 failed, 2 wrong command line,\n"
+        "3 bad data in a file, 4 no usable device.\n");
 }
 
 static const cli_command *find_command(const char *name)
@@ -86,7 +91,8 @@ static ris_result unknown_command(const char *name, ris_error *err)
     for (size_t i = 0; i < sizeof programs / sizeof programs[0]; i++) {
         ris__nearest_add(&nearest, programs[i].verb);
     }
-    return ris_fail(err, RIS_ERROR_USAGE, "unknown command '%.64s'; the nearest is %s", name, nearest.name[0]);
+    return ris_fail(err, RIS_ERROR_USAGE, "unknown command '%.64s'; the nearest is %s", name,
+                    nearest.name[0]);
 }
 
 static ris_result run(ris_cli *cli, int argc, char **argv, ris_error *err)
@@ -128,7 +134,8 @@ int main(int argc, char **argv)
     ris_result result = run(&cli, argc, argv, &err);
     if (fflush(stdout) != 0 || ferror(stdout)) {
         if (!result) {
-            result = ris_fail(&err, RIS_ERROR_FAILED, "cannot write to the standard output: %s", strerror(errno));
+            result =
+                ris_fail(&err, RIS_ERROR_FAILED, "cannot write to the standard output: %s", strerror(errno));
         }
     }
     if (result) {

@@ -11,8 +11,8 @@
 static void global_options(ris_cli *cli, bool *help, bool *version, cli_option out[GLOBAL_COUNT + 1])
 {
     const cli_option table[GLOBAL_COUNT + 1] = {
-        {"device", 0, "cpu|INDEX|NAME", "where the simulation runs (default: the first usable Vulkan device)", NULL,
-         &cli->device, NULL},
+        {"device", 0, "cpu|INDEX|NAME", "where the simulation runs (default: the first usable Vulkan device)",
+         NULL, &cli->device, NULL},
         {"json", 0, NULL, "print the result as JSON", &cli->json, NULL, NULL},
         {"quiet", 'q', NULL, "no progress, no notes", &cli->quiet, NULL, NULL},
         {"verbose", 'v', NULL, "more notes", &cli->verbose, NULL, NULL},
@@ -31,7 +31,8 @@ static void print_options(const cli_option *options)
         if (o->letter) {
             snprintf(letter, sizeof letter, "-%c, ", o->letter);
         }
-        snprintf(left, sizeof left, "%s--%s%s%s", letter, o->name, o->value ? " " : "", o->value ? o->value : "");
+        snprintf(left, sizeof left, "%s--%s%s%s", letter, o->name, o->value ? " " : "",
+                 o->value ? o->value : "");
         printf("  %-34s %s\n", left, o->help);
     }
 }
@@ -73,8 +74,8 @@ static const cli_option *find_letter(const cli_option *options, char letter)
     return NULL;
 }
 
-static ris_result unknown_option(const char *where, const char *word, const cli_option *own, const cli_option *global,
-                                 ris_error *err)
+static ris_result unknown_option(const char *where, const char *word, const cli_option *own,
+                                 const cli_option *global, ris_error *err)
 {
     char name[64];
     size_t length = strcspn(word, "=");
@@ -87,7 +88,8 @@ static ris_result unknown_option(const char *where, const char *word, const cli_
     for (const cli_option *o = global; o->name; o++) {
         ris__nearest_add(&nearest, o->name);
     }
-    return ris_fail(err, RIS_ERROR_USAGE, "unknown option '%s' of %s; the nearest is --%s", name, where, nearest.name[0]);
+    return ris_fail(err, RIS_ERROR_USAGE, "unknown option '%s' of %s; the nearest is --%s", name, where,
+                    nearest.name[0]);
 }
 
 static ris_result store(const cli_option *option, const char *value, ris_error *err)
@@ -96,11 +98,13 @@ static ris_result store(const cli_option *option, const char *value, ris_error *
         *option->flag = true;
     } else if (option->text) {
         if (*option->text && strcmp(*option->text, value) != 0) {
-            return ris_fail(err, RIS_ERROR_USAGE, "--%s is given twice: '%s' and '%s'", option->name, *option->text, value);
+            return ris_fail(err, RIS_ERROR_USAGE, "--%s is given twice: '%s' and '%s'", option->name,
+                            *option->text, value);
         }
         *option->text = value;
     } else if (option->list->count == CLI_LIST_SIZE) {
-        return ris_fail(err, RIS_ERROR_USAGE, "--%s is given more than %d times", option->name, CLI_LIST_SIZE);
+        return ris_fail(err, RIS_ERROR_USAGE, "--%s is given more than %d times", option->name,
+                        CLI_LIST_SIZE);
     } else {
         option->list->item[option->list->count++] = value;
     }
@@ -108,8 +112,8 @@ static ris_result store(const cli_option *option, const char *value, ris_error *
 }
 
 /* One option word at argv[*index], with its value in the same word ("--a=b", "-ob") or in the next. */
-static ris_result parse_option(const char *where, const cli_option *own, const cli_option *global, int argc, char **argv,
-                               int *index, ris_error *err)
+static ris_result parse_option(const char *where, const cli_option *own, const cli_option *global, int argc,
+                               char **argv, int *index, ris_error *err)
 {
     const char *word = argv[*index];
     const char *value = NULL;
@@ -144,8 +148,9 @@ static ris_result parse_option(const char *where, const cli_option *own, const c
     return store(option, value, err);
 }
 
-ris_result cli_parse(ris_cli *cli, const cli_command *command, const cli_option *options, int argc, char **argv,
-                     const char **positional, uint32_t positional_capacity, uint32_t *out_count, ris_error *err)
+ris_result cli_parse(ris_cli *cli, const cli_command *command, const cli_option *options, int argc,
+                     char **argv, const char **positional, uint32_t positional_capacity, uint32_t *out_count,
+                     ris_error *err)
 {
     bool help = false, version = false, only_words = false;
     cli_option global[GLOBAL_COUNT + 1];
@@ -160,8 +165,8 @@ ris_result cli_parse(ris_cli *cli, const cli_command *command, const cli_option 
                 return r;
             }
         } else if (*out_count == positional_capacity) {
-            return ris_fail(err, RIS_ERROR_USAGE, "unexpected '%s'; usage: risorius %s %s", argv[i], command->name,
-                            command->usage);
+            return ris_fail(err, RIS_ERROR_USAGE, "unexpected '%s'; usage: risorius %s %s", argv[i],
+                            command->name, command->usage);
         } else {
             positional[(*out_count)++] = argv[i];
         }
@@ -197,45 +202,50 @@ ris_result cli_parse_global(ris_cli *cli, int argc, char **argv, int *index, ris
 ris_result cli_need_head(const cli_command *command, uint32_t count, ris_error *err)
 {
     if (count == 0) {
-        return ris_fail(err, RIS_ERROR_USAGE, "%s needs a head folder; usage: risorius %s %s", command->name, command->name,
-                        command->usage);
+        return ris_fail(err, RIS_ERROR_USAGE, "%s needs a head folder; usage: risorius %s %s", command->name,
+                        command->name, command->usage);
     }
     return RIS_OK;
 }
 
-ris_result cli_number(const char *option, const char *text, double minimum, double maximum, double *out, ris_error *err)
+ris_result cli_number(const char *option, const char *text, double minimum, double maximum, double *out,
+                      ris_error *err)
 {
     const char *end = text + strlen(text);
     double value = 0;
-    if (ris__parse_number(text, end, &value) != end || end == text || !(value >= minimum && value <= maximum)) {
-        return ris_fail(err, RIS_ERROR_USAGE, "--%s: expected a number from %g to %g, found '%.64s'", option, minimum,
-                        maximum, text);
+    if (ris__parse_number(text, end, &value) != end || end == text ||
+        !(value >= minimum && value <= maximum)) {
+        return ris_fail(err, RIS_ERROR_USAGE, "--%s: expected a number from %g to %g, found '%.64s'", option,
+                        minimum, maximum, text);
     }
     *out = value;
     return RIS_OK;
 }
 
-ris_result cli_count(const char *option, const char *text, uint32_t minimum, uint32_t maximum, uint32_t *out, ris_error *err)
+ris_result cli_count(const char *option, const char *text, uint32_t minimum, uint32_t maximum, uint32_t *out,
+                     ris_error *err)
 {
     const char *end = text + strlen(text);
     int64_t value = 0;
     if (ris__parse_integer(text, end, &value) != end || end == text || value < (int64_t)minimum ||
         value > (int64_t)maximum) {
-        return ris_fail(err, RIS_ERROR_USAGE, "--%s: expected a whole number from %u to %u, found '%.64s'", option, minimum,
-                        maximum, text);
+        return ris_fail(err, RIS_ERROR_USAGE, "--%s: expected a whole number from %u to %u, found '%.64s'",
+                        option, minimum, maximum, text);
     }
     *out = (uint32_t)value;
     return RIS_OK;
 }
 
-ris_result cli_size(const char *option, const char *text, uint32_t *out_width, uint32_t *out_height, ris_error *err)
+ris_result cli_size(const char *option, const char *text, uint32_t *out_width, uint32_t *out_height,
+                    ris_error *err)
 {
     const char *end = text + strlen(text);
     int64_t width = 0, height = 0;
     const char *cross = ris__parse_integer(text, end, &width);
-    if (!cross || *cross != 'x' || ris__parse_integer(cross + 1, end, &height) != end || width < 16 || width > 8192 ||
-        height < 16 || height > 8192) {
-        return ris_fail(err, RIS_ERROR_USAGE, "--%s: expected WIDTHxHEIGHT with sides from 16 to 8192, found '%.64s'", option,
+    if (!cross || *cross != 'x' || ris__parse_integer(cross + 1, end, &height) != end || width < 16 ||
+        width > 8192 || height < 16 || height > 8192) {
+        return ris_fail(err, RIS_ERROR_USAGE,
+                        "--%s: expected WIDTHxHEIGHT with sides from 16 to 8192, found '%.64s'", option,
                         text);
     }
     *out_width = (uint32_t)width;

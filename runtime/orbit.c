@@ -14,19 +14,21 @@ static float clamp(float value, float low, float high)
 
 ris_orbit orbit_from_camera(const ris_camera *camera)
 {
-    ris_vec3 d = {camera->eye.x - camera->target.x, camera->eye.y - camera->target.y, camera->eye.z - camera->target.z};
+    ris_vec3 d = {camera->eye.x - camera->target.x, camera->eye.y - camera->target.y,
+                  camera->eye.z - camera->target.z};
     float distance = sqrtf(d.x * d.x + d.y * d.y + d.z * d.z);
     return (ris_orbit){.target = camera->target,
-                   .yaw = atan2f(d.x, d.z),
-                   .pitch = asinf(clamp(d.y / distance, -1, 1)),
-                   .distance_mm = distance,
-                   .fov_y_deg = camera->fov_y_deg};
+                       .yaw = atan2f(d.x, d.z),
+                       .pitch = asinf(clamp(d.y / distance, -1, 1)),
+                       .distance_mm = distance,
+                       .fov_y_deg = camera->fov_y_deg};
 }
 
 ris_camera orbit_camera(const ris_orbit *orbit)
 {
     float flat = orbit->distance_mm * cosf(orbit->pitch);
-    ris_vec3 eye = {orbit->target.x + flat * sinf(orbit->yaw), orbit->target.y + orbit->distance_mm * sinf(orbit->pitch),
+    ris_vec3 eye = {orbit->target.x + flat * sinf(orbit->yaw),
+                    orbit->target.y + orbit->distance_mm * sinf(orbit->pitch),
                     orbit->target.z + flat * cosf(orbit->yaw)};
     return (ris_camera){.eye = eye, .target = orbit->target, .up = {0, 1, 0}, .fov_y_deg = orbit->fov_y_deg};
 }

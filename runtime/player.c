@@ -114,8 +114,8 @@ static float mix(float a, float b, float t)
     return a + (b - a) * t;
 }
 
-ris_result player_look(ris_player *player, double time_s, const ris_vec4 **out_position, const ris_vec4 **out_normal,
-                       ris_error *err)
+ris_result player_look(ris_player *player, double time_s, const ris_vec4 **out_position,
+                       const ris_vec4 **out_normal, ris_error *err)
 {
     ris_result r = load(player, err);
     if (r) {
@@ -131,7 +131,8 @@ ris_result player_look(ris_player *player, double time_s, const ris_vec4 **out_p
     uint32_t count = ris_sim_get_model(player->sim)->node_count;
     for (uint32_t i = 0; i < count; i++) {
         const ris_vec4 *a = &player->position[0][i], *b = &player->position[1][i];
-        player->mixed_position[i] = (ris_vec4){mix(a->x, b->x, t), mix(a->y, b->y, t), mix(a->z, b->z, t), b->w};
+        player->mixed_position[i] =
+            (ris_vec4){mix(a->x, b->x, t), mix(a->y, b->y, t), mix(a->z, b->z, t), b->w};
         a = &player->normal[0][i];
         b = &player->normal[1][i];
         ris_vec4 n = {mix(a->x, b->x, t), mix(a->y, b->y, t), mix(a->z, b->z, t), 0};

@@ -8,7 +8,8 @@
 
 void progress_start(ris_progress *bar, const ris_cli *cli, const char *title)
 {
-    *bar = (ris_progress){.title = title, .silent = cli->quiet, .terminal = isatty(STDERR_FILENO) != 0, .last = UINT32_MAX};
+    *bar = (ris_progress){
+        .title = title, .silent = cli->quiet, .terminal = isatty(STDERR_FILENO) != 0, .last = UINT32_MAX};
     bar->start_ns = ris__clock_ns();
 }
 
@@ -29,8 +30,8 @@ void progress_show(ris_progress *bar, uint32_t done, uint32_t total)
         cells[i] = i < percent * BAR_WIDTH / 100u ? '#' : '.';
     }
     cells[BAR_WIDTH] = '\0';
-    fprintf(stderr, "%s%s [%s] %3u %%  %u/%u  %.1f s%s", bar->terminal ? "\r" : "", bar->title, cells, percent, done,
-            total, seconds, bar->terminal ? "" : "\n");
+    fprintf(stderr, "%s%s [%s] %3u %%  %u/%u  %.1f s%s", bar->terminal ? "\r" : "", bar->title, cells,
+            percent, done, total, seconds, bar->terminal ? "" : "\n");
     fflush(stderr);
 }
 

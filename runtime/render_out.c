@@ -44,14 +44,17 @@ ris_result render_out_name(render_out *out, const char *path, ris_error *err)
         int width;
         out->kind = strchr(path, '%') ? RENDER_PNG_SEQUENCE : RENDER_PNG;
         if (out->kind == RENDER_PNG_SEQUENCE && !find_number(path, &start, &end, &width)) {
-            return ris_fail(err, RIS_ERROR_USAGE, "-o: a picture sequence needs one %%d or %%0Nd in its name, found '%s'", path);
+            return ris_fail(err, RIS_ERROR_USAGE,
+                            "-o: a picture sequence needs one %%d or %%0Nd in its name, found '%s'", path);
         }
         if (out->kind == RENDER_PNG_SEQUENCE && strchr(path + start, '/')) {
-            return ris_fail(err, RIS_ERROR_USAGE, "-o: the number of a picture sequence belongs in the file name, found '%s'",
+            return ris_fail(err, RIS_ERROR_USAGE,
+                            "-o: the number of a picture sequence belongs in the file name, found '%s'",
                             path);
         }
     } else {
-        return ris_fail(err, RIS_ERROR_USAGE, "-o: expected a name ending in .mp4, .png or .pc2, found '%s'", path);
+        return ris_fail(err, RIS_ERROR_USAGE, "-o: expected a name ending in .mp4, .png or .pc2, found '%s'",
+                        path);
     }
     return RIS_OK;
 }
@@ -76,8 +79,8 @@ static void folder_path(const render_out *out, char path[RIS_PATH_SIZE])
     snprintf(path, RIS_PATH_SIZE, "%.*s", slash ? (int)(slash - out->path) : 0, out->path);
 }
 
-ris_result render_out_open(render_out *out, uint32_t width, uint32_t height, uint32_t fps, uint32_t node_count,
-                           ris_error *err)
+ris_result render_out_open(render_out *out, uint32_t width, uint32_t height, uint32_t fps,
+                           uint32_t node_count, ris_error *err)
 {
     ris_result r = RIS_OK;
     out->width = width;

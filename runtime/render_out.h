@@ -22,8 +22,8 @@ ris_result render_out_name(render_out *out, const char *path, ris_error *err);
 /* True when the output needs pictures, false for a vertex cache. */
 bool render_out_draws(const render_out *out);
 /* Opens it for pictures of width x height, or for node_count points. Makes the folder of a sequence. */
-ris_result render_out_open(render_out *out, uint32_t width, uint32_t height, uint32_t fps, uint32_t node_count,
-                           ris_error *err);
+ris_result render_out_open(render_out *out, uint32_t width, uint32_t height, uint32_t fps,
+                           uint32_t node_count, ris_error *err);
 /* rgba (width x height x 4) for pictures, position (node_count) for a cache. */
 ris_result render_out_frame(render_out *out, const uint8_t *rgba, const ris_vec4 *position, ris_error *err);
 /* Completes the file under its name. */

@@ -33,7 +33,8 @@ static ris_result collect(ris_sheet *sheet, const ris_clip *clip, ris_error *err
     return RIS_OK;
 }
 
-ris_result sheet_init(ris_sheet *out, const char *path, const ris_backend *backend, const ris_clip *clip, ris_error *err)
+ris_result sheet_init(ris_sheet *out, const char *path, const ris_backend *backend, const ris_clip *clip,
+                      ris_error *err)
 {
     *out = (ris_sheet){.path = path};
     ris_result r = collect(out, clip, err);
@@ -57,7 +58,8 @@ ris_result sheet_init(ris_sheet *out, const char *path, const ris_backend *backe
     out->height = (out->pose_count + out->columns - 1) / out->columns * 2u * CELL_HEIGHT;
     out->rgba = malloc((size_t)out->width * out->height * 4);
     if (!out->rgba) {
-        r = ris_fail(err, RIS_ERROR_MEMORY, "out of memory for a contact sheet of %ux%u", out->width, out->height);
+        r = ris_fail(err, RIS_ERROR_MEMORY, "out of memory for a contact sheet of %ux%u", out->width,
+                     out->height);
         goto fail;
     }
     for (size_t i = 0; i < (size_t)out->width * out->height; i++) {
@@ -95,7 +97,8 @@ static void place(ris_sheet *sheet, uint32_t index, const uint8_t *rgba)
 ris_result sheet_take(ris_sheet *sheet, ris_player *player, double time_s, ris_error *err)
 {
     ris_result r = RIS_OK;
-    for (; !r && sheet->next < sheet->pose_count && sheet->pose[sheet->next].time_s <= time_s; sheet->next += !r) {
+    for (; !r && sheet->next < sheet->pose_count && sheet->pose[sheet->next].time_s <= time_s;
+         sheet->next += !r) {
         double at = sheet->pose[sheet->next].time_s;
         const ris_vec4 *position, *normal;
         const uint8_t *rgba;

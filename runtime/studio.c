@@ -39,8 +39,8 @@ struct ris_studio {
     uint8_t *view, *picture;            /* one view, and all side by side (the same when there is one) */
 };
 
-ris_result studio_create(const ris_backend *backend, const studio_views *views, uint32_t width, uint32_t height,
-                         bool wireframe, ris_studio **out, ris_error *err)
+ris_result studio_create(const ris_backend *backend, const studio_views *views, uint32_t width,
+                         uint32_t height, bool wireframe, ris_studio **out, ris_error *err)
 {
     *out = NULL;
     ris_studio *s = calloc(1, sizeof *s);
@@ -61,11 +61,13 @@ ris_result studio_create(const ris_backend *backend, const studio_views *views, 
     s->view = malloc(pixels * 4);
     s->picture = views->count > 1 ? malloc(pixels * 4 * views->count) : s->view;
     if (!s->view || !s->picture) {
-        r = ris_fail(err, RIS_ERROR_MEMORY, "out of memory for a picture of %ux%u", width * views->count, height);
+        r = ris_fail(err, RIS_ERROR_MEMORY, "out of memory for a picture of %ux%u", width * views->count,
+                     height);
         goto fail;
     }
     r = ris_draw_create(backend->device, backend->model,
-                        &(ris_draw_def){.width = width, .height = height, .wireframe = wireframe}, &s->draw, err);
+                        &(ris_draw_def){.width = width, .height = height, .wireframe = wireframe}, &s->draw,
+                        err);
     if (r) {
         goto fail;
     }
@@ -93,8 +95,9 @@ ris_result studio_shoot(ris_studio *studio, ris_sim *sim, const ris_vec4 *positi
 {
     size_t row = (size_t)studio->width * 4;
     for (uint32_t i = 0; i < studio->view_count; i++) {
-        ris_result r = position ? ris_draw_frame_at(studio->draw, sim, position, normal, &studio->camera[i], err)
-                                : ris_draw_frame(studio->draw, sim, &studio->camera[i], err);
+        ris_result r = position
+                           ? ris_draw_frame_at(studio->draw, sim, position, normal, &studio->camera[i], err)
+                           : ris_draw_frame(studio->draw, sim, &studio->camera[i], err);
         if (!r) {
             r = ris_draw_read(studio->draw, studio->view, err);
         }
@@ -110,8 +113,8 @@ ris_result studio_shoot(ris_studio *studio, ris_sim *sim, const ris_vec4 *positi
 }
 #else
 /* Without Vulkan nothing draws: backend_open has refused before a studio is asked for. */
-ris_result studio_create(const ris_backend *backend, const studio_views *views, uint32_t width, uint32_t height,
-                         bool wireframe, ris_studio **out, ris_error *err)
+ris_result studio_create(const ris_backend *backend, const studio_views *views, uint32_t width,
+                         uint32_t height, bool wireframe, ris_studio **out, ris_error *err)
 {
     (void)backend, (void)views, (void)width, (void)height, (void)wireframe;
     *out = NULL;

@@ -10,7 +10,8 @@ static ris_result refuse(ris_cli *cli, const cli_command *command, int argc, cha
     if (argc == 2 && strcmp(argv[1], "--help") == 0) {
         return cli_parse(cli, command, options, argc, argv, NULL, 0, &count, err);
     }
-    return ris_fail(err, RIS_ERROR_DEVICE, "'%s' needs Vulkan, and this risorius was built without Vulkan (RISORIUS_VULKAN=OFF)",
+    return ris_fail(err, RIS_ERROR_DEVICE,
+                    "'%s' needs Vulkan, and this risorius was built without Vulkan (RISORIUS_VULKAN=OFF)",
                     command->name);
 }
 
@@ -30,5 +31,7 @@ static ris_result run_validate(ris_cli *cli, int argc, char **argv, ris_error *e
 }
 
 const cli_command cmd_view = {.name = "view", .usage = "HEAD", .summary = "(needs Vulkan)", .run = run_view};
-const cli_command cmd_compare = {.name = "compare", .usage = "HEAD --clip C", .summary = "(needs Vulkan)", .run = run_compare};
-const cli_command cmd_validate = {.name = "validate", .usage = "", .summary = "(needs Vulkan)", .run = run_validate};
+const cli_command cmd_compare = {
+    .name = "compare", .usage = "HEAD --clip C", .summary = "(needs Vulkan)", .run = run_compare};
+const cli_command cmd_validate = {
+    .name = "validate", .usage = "", .summary = "(needs Vulkan)", .run = run_validate};

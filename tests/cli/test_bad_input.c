@@ -18,8 +18,8 @@ static void expect_code(const char *what, int code, const char *in_err)
 {
     const char *newline = strchr(run.err, '\n');
     if (run.code != code || !strstr(run.err, in_err) || !newline || newline[1] != '\0') {
-        fail_msg("%s: code %d (expected %d), stderr '%s' (expected one line with '%s')", what, run.code, code, run.err,
-                 in_err);
+        fail_msg("%s: code %d (expected %d), stderr '%s' (expected one line with '%s')", what, run.code, code,
+                 run.err, in_err);
     }
 }
 
@@ -42,7 +42,8 @@ static void expect_bad_clip(const char *name, const char *text, const char *in_e
     command_folder(folder, name);
     snprintf(path, sizeof path, "%s/clip.json", folder);
     command_write_file(path, text);
-    snprintf(line, sizeof line, "--device cpu export " HEAD " --clip '%s' --at 0 -o '%s/out.obj'", path, folder);
+    snprintf(line, sizeof line, "--device cpu export " HEAD " --clip '%s' --at 0 -o '%s/out.obj'", path,
+             folder);
     command_run(&run, NULL, line);
     expect_code(name, 3, in_err);
     assert_int_equal(command_entries(folder), 1);
@@ -55,7 +56,9 @@ static void missing_files(void **state)
     expect_code("no head", 3, "no-such-head");
     command_run(&run, NULL, "info " HEAD "/skin.obj");
     expect_code("a file as head", 3, "skin.obj");
-    command_run(&run, NULL, "--device cpu export " HEAD " --clip no-such-clip.json --at 0 -o '" RIS_BUILD_DIR "/never.obj'");
+    command_run(&run, NULL,
+                "--device cpu export " HEAD " --clip no-such-clip.json --at 0 -o '" RIS_BUILD_DIR
+                "/never.obj'");
     expect_code("no clip", 3, "no-such-clip.json");
     assert_false(command_exists(RIS_BUILD_DIR "/never.obj"));
 }
@@ -63,13 +66,16 @@ static void missing_files(void **state)
 static void bad_json_names_line_and_column(void **state)
 {
     (void)state;
-    expect_bad_file("json_syntax", "head.json", "{\"format\": \"risorius-head\",\n  \"version\": 1,,\n}", "head.json:2:");
+    expect_bad_file("json_syntax", "head.json", "{\"format\": \"risorius-head\",\n  \"version\": 1,,\n}",
+                    "head.json:2:");
     expect_bad_file("json_empty", "head.json", "", "head.json:");
-    expect_bad_file("json_other", "head.json", "{\"format\": \"risorius-clip\", \"version\": 1}", "head.json:1:");
-    expect_bad_file("json_key", "head.json", "{\"format\": \"risorius-head\", \"version\": 1,\n \"colour\": \"x\"}", "colour");
+    expect_bad_file("json_other", "head.json", "{\"format\": \"risorius-clip\", \"version\": 1}",
+                    "head.json:1:");
+    expect_bad_file("json_key", "head.json",
+                    "{\"format\": \"risorius-head\", \"version\": 1,\n \"colour\": \"x\"}", "colour");
     expect_bad_file("json_deep", "head.json", "[[[[[[[[[[[[[[[[", "head.json:1:");
-    expect_bad_file("json_muscles", "muscles.json", "{\"format\": \"risorius-muscles\", \"version\": 2, \"muscles\": []}",
-                    "version");
+    expect_bad_file("json_muscles", "muscles.json",
+                    "{\"format\": \"risorius-muscles\", \"version\": 2, \"muscles\": []}", "version");
 }
 
 static void bad_meshes(void **state)
@@ -80,35 +86,42 @@ static void bad_meshes(void **state)
     expect_bad_file("obj_zero", "skin.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", "area");
     expect_bad_file("obj_isolated", "skin.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 5 5\nf 1 2 3\n", "isolated");
     expect_bad_file("obj_empty", "skin.obj", "# nothing\n", "skin.obj");
-    expect_bad_file("obj_huge_index", "skin.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99999999999999999999\n", "skin.obj:4:");
+    expect_bad_file("obj_huge_index", "skin.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99999999999999999999\n",
+                    "skin.obj:4:");
 }
 
 static void bad_clips(void **state)
 {
     (void)state;
     expect_bad_clip("clip_empty", "", "clip.json:");
-    expect_bad_clip("clip_no_tracks", "{\"format\": \"risorius-clip\", \"version\": 1, \"duration_s\": 1, \"tracks\": []}",
+    expect_bad_clip("clip_no_tracks",
+                    "{\"format\": \"risorius-clip\", \"version\": 1, \"duration_s\": 1, \"tracks\": []}",
                     "clip.json:1:");
-    expect_bad_clip("clip_muscle",
-                    "{\"format\": \"risorius-clip\", \"version\": 1, \"duration_s\": 1,\n \"tracks\": [\n  {\"target\": "
-                    "\"zygomaticus_mayor\", \"keys\": [{\"t\": 0, \"v\": 0, \"ease\": \"step\"}]}]}",
-                    "clip.json:3:");
+    expect_bad_clip(
+        "clip_muscle",
+        "{\"format\": \"risorius-clip\", \"version\": 1, \"duration_s\": 1,\n \"tracks\": [\n  {\"target\": "
+        "\"zygomaticus_mayor\", \"keys\": [{\"t\": 0, \"v\": 0, \"ease\": \"step\"}]}]}",
+        "clip.json:3:");
     assert_non_null(strstr(run.err, "zygomaticus_major"));
-    expect_bad_clip("clip_long", "{\"format\": \"risorius-clip\", \"version\": 1, \"duration_s\": 1e300, \"tracks\": []}",
+    expect_bad_clip("clip_long",
+                    "{\"format\": \"risorius-clip\", \"version\": 1, \"duration_s\": 1e300, \"tracks\": []}",
                     "clip.json:1:");
-    expect_bad_clip("clip_order",
-                    "{\"format\": \"risorius-clip\", \"version\": 1, \"duration_s\": 1,\n \"tracks\": [{\"target\": "
-                    "\"jaw.open\", \"keys\": [{\"t\": 1, \"v\": 0, \"ease\": \"step\"}, {\"t\": 0, \"v\": 1, \"ease\": "
-                    "\"step\"}]}]}",
-                    "clip.json:2:");
+    expect_bad_clip(
+        "clip_order",
+        "{\"format\": \"risorius-clip\", \"version\": 1, \"duration_s\": 1,\n \"tracks\": [{\"target\": "
+        "\"jaw.open\", \"keys\": [{\"t\": 1, \"v\": 0, \"ease\": \"step\"}, {\"t\": 0, \"v\": 1, \"ease\": "
+        "\"step\"}]}]}",
+        "clip.json:2:");
 }
 
 static void unknown_names_on_the_command_line(void **state)
 {
     (void)state;
-    command_run(&run, NULL, "--device cpu export " HEAD " --pose zygomaticus_mayor=1 -o '" RIS_BUILD_DIR "/never.obj'");
+    command_run(&run, NULL,
+                "--device cpu export " HEAD " --pose zygomaticus_mayor=1 -o '" RIS_BUILD_DIR "/never.obj'");
     expect_code("pose", 2, "zygomaticus_major");
-    command_run(&run, NULL, "--device cpu export " HEAD " --pose jaw.open=wide -o '" RIS_BUILD_DIR "/never.obj'");
+    command_run(&run, NULL,
+                "--device cpu export " HEAD " --pose jaw.open=wide -o '" RIS_BUILD_DIR "/never.obj'");
     expect_code("pose value", 2, "wide");
     assert_false(command_exists(RIS_BUILD_DIR "/never.obj"));
 }

@@ -25,8 +25,8 @@ static void expect(const char *name, const command_def *def, const char *line, i
     here.directory = folder;
     command_run(&run, &here, line);
     if (run.code != code || command_entries(folder) != files) {
-        fail_msg("risorius %s: code %d (expected %d), %u files (expected %u), stderr '%s'", line, run.code, code,
-                 command_entries(folder), files, run.err);
+        fail_msg("risorius %s: code %d (expected %d), %u files (expected %u), stderr '%s'", line, run.code,
+                 code, command_entries(folder), files, run.err);
     }
 }
 
@@ -40,7 +40,8 @@ static void load_picture(const char *name, picture *out)
 static void without_a_driver_nothing_runs(void **state)
 {
     (void)state;
-    const command_def none = {.environment = {"VK_ICD_FILENAMES=/nonexistent.json", "VK_DRIVER_FILES=/nonexistent.json"}};
+    const command_def none = {
+        .environment = {"VK_ICD_FILENAMES=/nonexistent.json", "VK_DRIVER_FILES=/nonexistent.json"}};
     static const char *const lines[] = {
         "export " HEAD " -o x.obj",
         "render " HEAD " --clip " CLIP " -o x.mp4",
@@ -77,7 +78,8 @@ static void the_cpu_is_not_compared_with_itself(void **state)
 static void a_pose_gives_a_picture(void **state)
 {
     (void)state;
-    expect("pose", NULL, "render " HEAD " --pose zygomaticus_major=1 -o x.png --size 96x128 --view front,34", 0, 1);
+    expect("pose", NULL, "render " HEAD " --pose zygomaticus_major=1 -o x.png --size 96x128 --view front,34",
+           0, 1);
     picture shot;
     load_picture("x.png", &shot);
     assert_int_equal(shot.width, 192);
@@ -95,9 +97,10 @@ static void write_short_clip(char out[COMMAND_PATH_SIZE + 16])
     char place[COMMAND_PATH_SIZE];
     command_folder(place, "short_clip");
     snprintf(out, COMMAND_PATH_SIZE + 16, "%s/clip.json", place);
-    command_write_file(out, "{\"format\": \"risorius-clip\", \"version\": 1, \"duration_s\": 0.5, \"tracks\": [{\"target\": "
-                            "\"jaw.open\", \"keys\": [{\"t\": 0, \"v\": 0, \"ease\": \"cubic\"}, {\"t\": 0.4, \"v\": 1, "
-                            "\"ease\": \"step\"}]}]}");
+    command_write_file(
+        out, "{\"format\": \"risorius-clip\", \"version\": 1, \"duration_s\": 0.5, \"tracks\": [{\"target\": "
+             "\"jaw.open\", \"keys\": [{\"t\": 0, \"v\": 0, \"ease\": \"cubic\"}, {\"t\": 0.4, \"v\": 1, "
+             "\"ease\": \"step\"}]}]}");
 }
 
 static void a_clip_gives_all_outputs_at_once(void **state)
@@ -105,8 +108,10 @@ static void a_clip_gives_all_outputs_at_once(void **state)
     (void)state;
     char clip[COMMAND_PATH_SIZE + 16], line[2 * COMMAND_PATH_SIZE];
     write_short_clip(clip);
-    snprintf(line, sizeof line, "render " HEAD " --clip '%s' -o x.mp4 -o frames/%%03d.png -o x.pc2 --contact sheet.png "
-             "--size 64x80 --fps 8 --json", clip);
+    snprintf(line, sizeof line,
+             "render " HEAD " --clip '%s' -o x.mp4 -o frames/%%03d.png -o x.pc2 --contact sheet.png "
+             "--size 64x80 --fps 8 --json",
+             clip);
     expect("outputs", NULL, line, 0, 4);
     char frames[COMMAND_PATH_SIZE + 16];
     snprintf(frames, sizeof frames, "%s/frames", folder);
@@ -132,7 +137,8 @@ static void a_full_disk_leaves_nothing(void **state)
     (void)state;
     const command_def full = {.file_limit = 600};
     expect("full_png", &full, "render " HEAD " --pose jaw.open=1 -o x.png --size 128x128", 1, 0);
-    expect("full_sequence", &full, "render " HEAD " --pose jaw.open=1 -o frames/%d.png --size 128x128 --fps 3", 1, 0);
+    expect("full_sequence", &full,
+           "render " HEAD " --pose jaw.open=1 -o frames/%d.png --size 128x128 --fps 3", 1, 0);
     expect("full_mp4", &full, "render " HEAD " --pose jaw.open=1 -o x.mp4 --size 128x128 --fps 3", 1, 0);
 }
 
@@ -178,8 +184,10 @@ static void a_clip_that_hardly_moves_proves_nothing(void **state)
     char place[COMMAND_PATH_SIZE], clip[COMMAND_PATH_SIZE + 16], line[2 * COMMAND_PATH_SIZE];
     command_folder(place, "still_clip");
     snprintf(clip, sizeof clip, "%s/clip.json", place);
-    command_write_file(clip, "{\"format\": \"risorius-clip\", \"version\": 1, \"duration_s\": 0.2, \"tracks\": [{\"target\": "
-                             "\"jaw.open\", \"keys\": [{\"t\": 0, \"v\": 0, \"ease\": \"step\"}]}]}");
+    command_write_file(
+        clip,
+        "{\"format\": \"risorius-clip\", \"version\": 1, \"duration_s\": 0.2, \"tracks\": [{\"target\": "
+        "\"jaw.open\", \"keys\": [{\"t\": 0, \"v\": 0, \"ease\": \"step\"}]}]}");
     snprintf(line, sizeof line, "compare " HEAD " --clip '%s'", clip);
     expect("still", NULL, line, 1, 0);
     assert_non_null(strstr(run.err, "500"));

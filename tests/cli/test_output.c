@@ -38,9 +38,11 @@ static void info_is_json(void **state)
     assert_int_equal(json_integer_value(json_object_get(root, "vertices")), count_lines(obj, "v "));
     assert_int_equal(json_integer_value(json_object_get(root, "faces")), count_lines(obj, "f "));
     assert_true(json_integer_value(json_object_get(root, "moving_nodes")) >= 2000);
-    assert_true(json_integer_value(json_object_get(root, "springs")) > json_integer_value(json_object_get(root, "moving_nodes")));
+    assert_true(json_integer_value(json_object_get(root, "springs")) >
+                json_integer_value(json_object_get(root, "moving_nodes")));
     assert_true(json_array_size(json_object_get(root, "muscles")) >= 10);
-    assert_true(json_real_value(json_object_get(root, "stable_dt_s")) > json_real_value(json_object_get(root, "dt_s")));
+    assert_true(json_real_value(json_object_get(root, "stable_dt_s")) >
+                json_real_value(json_object_get(root, "dt_s")));
     free(obj);
     json_decref(root);
     command_run(&run, NULL, "info " HEAD);
@@ -60,7 +62,8 @@ static double *read_positions(const char *path, uint32_t *out_count)
     for (const char *line = text; line && *line; line = strchr(line, '\n')) {
         line += *line == '\n';
         if (strncmp(line, "v ", 2) == 0) {
-            assert_int_equal(sscanf(line, "v %lf %lf %lf", &position[at], &position[at + 1], &position[at + 2]), 3);
+            assert_int_equal(
+                sscanf(line, "v %lf %lf %lf", &position[at], &position[at + 1], &position[at + 2]), 3);
             at += 3;
         }
     }
@@ -81,7 +84,8 @@ static double largest_difference(const double *a, const double *b, uint32_t coun
 static void export_keeps_the_order_of_the_skin(void **state)
 {
     (void)state;
-    char folder[COMMAND_PATH_SIZE], line[3 * COMMAND_PATH_SIZE], rest[COMMAND_PATH_SIZE + 16], open[COMMAND_PATH_SIZE + 16];
+    char folder[COMMAND_PATH_SIZE], line[3 * COMMAND_PATH_SIZE], rest[COMMAND_PATH_SIZE + 16],
+        open[COMMAND_PATH_SIZE + 16];
     command_folder(folder, "export");
     snprintf(rest, sizeof rest, "%s/rest.obj", folder);
     snprintf(open, sizeof open, "%s/open.obj", folder);
@@ -94,8 +98,8 @@ static void export_keeps_the_order_of_the_skin(void **state)
     assert_int_equal(command_entries(folder), 2);
 
     uint32_t skin_count, rest_count, open_count;
-    double *skin = read_positions(RIS_SOURCE_DIR "/assets/human/skin.obj", &skin_count), *at_rest = read_positions(rest, &rest_count),
-           *opened = read_positions(open, &open_count);
+    double *skin = read_positions(RIS_SOURCE_DIR "/assets/human/skin.obj", &skin_count),
+           *at_rest = read_positions(rest, &rest_count), *opened = read_positions(open, &open_count);
     assert_int_equal(skin_count, rest_count);
     assert_int_equal(skin_count, open_count);
     assert_true(largest_difference(skin, at_rest, skin_count) < 0.01);
@@ -111,7 +115,8 @@ static void export_with_parts_adds_objects(void **state)
     char folder[COMMAND_PATH_SIZE], line[2 * COMMAND_PATH_SIZE], path[COMMAND_PATH_SIZE + 16];
     command_folder(folder, "parts");
     snprintf(path, sizeof path, "%s/all.obj", folder);
-    snprintf(line, sizeof line, "--device cpu export " HEAD " --clip " CLIP " --at 0.5 --parts -o '%s'", path);
+    snprintf(line, sizeof line, "--device cpu export " HEAD " --clip " CLIP " --at 0.5 --parts -o '%s'",
+             path);
     command_run(&run, NULL, line);
     assert_int_equal(run.code, 0);
     char *text = command_read_file(path);
@@ -131,7 +136,8 @@ static void expect_nothing(const char *name, const command_def *def, const char 
     command_run(&run, &here, line);
     const char *newline = strrchr(run.err, '\n');
     if (run.code != code || command_entries(folder) != 0 || !newline || newline == run.err) {
-        fail_msg("%s: code %d (expected %d), %u files left, stderr '%s'", name, run.code, code, command_entries(folder), run.err);
+        fail_msg("%s: code %d (expected %d), %u files left, stderr '%s'", name, run.code, code,
+                 command_entries(folder), run.err);
     }
 }
 
@@ -159,9 +165,11 @@ static void an_interrupt_leaves_nothing(void **state)
     char folder[COMMAND_PATH_SIZE], path[COMMAND_PATH_SIZE + 16], words[2 * COMMAND_PATH_SIZE];
     command_folder(folder, "long_clip");
     snprintf(path, sizeof path, "%s/long.json", folder);
-    command_write_file(path, "{\"format\": \"risorius-clip\", \"version\": 1, \"duration_s\": 600, \"tracks\": [{\"target\": "
-                             "\"jaw.open\", \"keys\": [{\"t\": 0, \"v\": 0, \"ease\": \"linear\"}, {\"t\": 600, \"v\": 1, "
-                             "\"ease\": \"step\"}]}]}");
+    command_write_file(
+        path,
+        "{\"format\": \"risorius-clip\", \"version\": 1, \"duration_s\": 600, \"tracks\": [{\"target\": "
+        "\"jaw.open\", \"keys\": [{\"t\": 0, \"v\": 0, \"ease\": \"linear\"}, {\"t\": 600, \"v\": 1, "
+        "\"ease\": \"step\"}]}]}");
     snprintf(words, sizeof words, "render " HEAD " --clip '%s' -o x.pc2", path);
     expect_nothing("interrupt", &def, words, 130);
 }

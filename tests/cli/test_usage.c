@@ -15,14 +15,15 @@
 
 static run_result run;
 
-static const char *const commands[] = {"devices", "info", "view", "render", "export", "compare", "bench", "validate"};
+static const char *const commands[] = {"devices", "info",    "view",  "render",
+                                       "export",  "compare", "bench", "validate"};
 
 static void expect(const char *line, int code, const char *in_err)
 {
     command_run(&run, NULL, line);
     if (run.code != code || (in_err && !strstr(run.err, in_err))) {
-        fail_msg("risorius %s: code %d (expected %d), stderr '%s' (expected '%s')", line, run.code, code, run.err,
-                 in_err ? in_err : "");
+        fail_msg("risorius %s: code %d (expected %d), stderr '%s' (expected '%s')", line, run.code, code,
+                 run.err, in_err ? in_err : "");
     }
 }
 
@@ -94,8 +95,9 @@ static void wrong_words_are_usage_errors(void **state)
 static void absurd_numbers_are_usage_errors(void **state)
 {
     (void)state;
-    static const char *const sizes[] = {"0x0", "1x1",     "100000x100000", "-640x480",    "640",        "640x",
-                                        "x480", "640X480", "640x480x3",     "99999999999999999999x5", "nanxnan", "6e2x480"};
+    static const char *const sizes[] = {
+        "0x0",     "1x1",       "100000x100000",          "-640x480", "640",    "640x", "x480",
+        "640X480", "640x480x3", "99999999999999999999x5", "nanxnan",  "6e2x480"};
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
         char line[512];
         snprintf(line, sizeof line, "render " HEAD " --pose jaw.open=1 -o x.png --size %s", sizes[i]);

@@ -38,7 +38,8 @@ static void the_cpu_simulates(void **state)
     (void)state;
     char folder[COMMAND_PATH_SIZE], line[2 * COMMAND_PATH_SIZE];
     command_folder(folder, "cpu_only");
-    snprintf(line, sizeof line, "--device cpu render " HEAD " --pose jaw.open=1 --fps 10 -o '%s/x.pc2'", folder);
+    snprintf(line, sizeof line, "--device cpu render " HEAD " --pose jaw.open=1 --fps 10 -o '%s/x.pc2'",
+             folder);
     command_run(&run, NULL, line);
     assert_int_equal(run.code, 0);
     assert_int_equal(command_entries(folder), 1);

@@ -1,4 +1,5 @@
-/* The viewer on a virtual display: sixty frames with a picture that is not blank; sizes, hiding, keys and closing. */
+/* The viewer on a virtual display: sixty frames with a picture that is not blank; sizes, hiding, keys and closing.
+ * ctest sets RIS_VALIDATION=1: not one message of the validation layer is allowed. */
 #include "cli/command.h"
 #include "cli/picture.h"
 
@@ -27,11 +28,13 @@ static void sixty_frames_show_a_face(void **state)
     char folder[COMMAND_PATH_SIZE], line[2 * COMMAND_PATH_SIZE], path[COMMAND_PATH_SIZE + 16];
     command_folder(folder, "viewer");
     snprintf(path, sizeof path, "%s/shot.png", folder);
-    snprintf(line, sizeof line, "view " HEAD " --clip " CLIP " --size 160x200 --frames 60 --screenshot '%s'", path);
+    snprintf(line, sizeof line, "view " HEAD " --clip " CLIP " --size 160x200 --frames 60 --screenshot '%s'",
+             path);
     command_run(&run, NULL, line);
     if (run.code != 0) {
         fail_msg("view: code %d, %s", run.code, run.err);
     }
+    assert_null(strstr(run.err, "validation: "));
     picture shot;
     picture_load(path, &shot);
     assert_int_equal(shot.width, 160);
@@ -82,8 +85,12 @@ static Window find_window(Display *display)
 
 static void press(Display *display, Window window, KeySym symbol)
 {
-    XKeyEvent event = {.type = KeyPress, .display = display, .window = window, .root = DefaultRootWindow(display),
-                       .same_screen = True, .keycode = XKeysymToKeycode(display, symbol)};
+    XKeyEvent event = {.type = KeyPress,
+                       .display = display,
+                       .window = window,
+                       .root = DefaultRootWindow(display),
+                       .same_screen = True,
+                       .keycode = XKeysymToKeycode(display, symbol)};
     XSendEvent(display, window, True, KeyPressMask, (XEvent *)&event);
     event.type = KeyRelease;
     XSendEvent(display, window, True, KeyReleaseMask, (XEvent *)&event);
@@ -93,7 +100,9 @@ static void press(Display *display, Window window, KeySym symbol)
 
 static void close_window(Display *display, Window window)
 {
-    XEvent event = {.xclient = {.type = ClientMessage, .window = window, .format = 32,
+    XEvent event = {.xclient = {.type = ClientMessage,
+                                .window = window,
+                                .format = 32,
                                 .message_type = XInternAtom(display, "WM_PROTOCOLS", False)}};
     event.xclient.data.l[0] = (long)XInternAtom(display, "WM_DELETE_WINDOW", False);
     XSendEvent(display, window, False, NoEventMask, &event);
@@ -152,12 +161,15 @@ static void a_hand_may_do_what_it_likes(void **state)
     int status = 0;
     waitpid(pid, &status, 0);
     XCloseDisplay(display);
-    if (!alive || !WIFEXITED(status) || WEXITSTATUS(status) != 0) {
-        char *log = command_read_file(path);
-        print_error("%s\n", log ? log : "");
+    char *log = command_read_file(path);
+    assert_non_null(log);
+    bool silent = strstr(log, "validation: ") == NULL;
+    if (!alive || !silent || !WIFEXITED(status) || WEXITSTATUS(status) != 0) {
+        print_error("%s\n", log);
         free(log);
         fail_msg("the viewer did not end well: window %d, alive %d, status %d", window != 0, alive, status);
     }
+    free(log);
 }
 
 int main(void)
