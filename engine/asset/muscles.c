@@ -17,7 +17,7 @@
 static const char *const record_keys[] = {
     "name",   "mirror_of", "kind",   "bone",      "grid",   "axis",      "thickness_mm",    "max_shortening",
     "attach", "au",        "origin", "insertion", "source", "radius_mm", "insertion_start", "lip_drag_power",
-    "gain",   NULL};
+    "gain",   "closes",    NULL};
 
 static double distance(const ris_vec3 *a, const ris_vec3 *b)
 {
@@ -94,6 +94,19 @@ static ris_result read_axis(const ris_json_at *at, ris_muscle_def *def, ris_erro
     }
     def->has_axis = true;
     return RIS_OK;
+}
+
+/* What a sphincter closes on: the moving point of KA-32, or the whole axis as a slit. */
+static ris_result read_closes(const ris_json_at *at, ris_muscle_def *def, ris_error *err)
+{
+    static const char *const choices[] = {"point", "line", NULL};
+    uint32_t choice = 0;
+    if (def->kind == RIS_MUSCLE_LINEAR) {
+        return ris__json_absent(at) ? RIS_OK : ris__json_expected(at, err, "no closes for a linear muscle");
+    }
+    ris_result result = ris__json_choice(at, RIS_JSON_OPTIONAL, choices, &choice, err);
+    def->closes_on_line = choice == 1;
+    return result;
 }
 
 /* "auto", or skin vertices, ascending and unique. */
@@ -211,7 +224,7 @@ static ris_result read_own(const ris_json_at *at, uint32_t vertex_count, ris_mus
     ris_json_at grid = ris__json_key(at, "grid"), axis = ris__json_key(at, "axis");
     ris_json_at attach = ris__json_key(at, "attach"), units = ris__json_key(at, "au");
     ris_json_at origin = ris__json_key(at, "origin"), insertion = ris__json_key(at, "insertion");
-    ris_json_at source = ris__json_key(at, "source");
+    ris_json_at source = ris__json_key(at, "source"), closes = ris__json_key(at, "closes");
     ris_result result;
     if ((result = ris__json_choice(&kind_at, RIS_JSON_REQUIRED, kinds, &kind, err)) ||
         (result = ris__json_choice(&bone_at, RIS_JSON_OPTIONAL, bones, &bone, err))) {
@@ -220,7 +233,8 @@ static ris_result read_own(const ris_json_at *at, uint32_t vertex_count, ris_mus
     def->kind = (ris_muscle_kind)kind;
     def->bone = (ris_bone)bone;
     if ((result = read_grid(&grid, def, err)) || (result = read_axis(&axis, def, err)) ||
-        (result = read_numbers(at, def, err)) || (result = read_attach(&attach, vertex_count, def, err)) ||
+        (result = read_closes(&closes, def, err)) || (result = read_numbers(at, def, err)) ||
+        (result = read_attach(&attach, vertex_count, def, err)) ||
         (result = read_action_units(&units, def, err)) || (result = read_story(&origin, &def->origin, err)) ||
         (result = read_story(&insertion, &def->insertion, err)) ||
         (result = read_story(&source, &def->source, err))) {
@@ -229,8 +243,9 @@ static ris_result read_own(const ris_json_at *at, uint32_t vertex_count, ris_mus
     return RIS_OK;
 }
 
-/* Copies source mirrored about x = 0: rows stay (row 0 is the fixed end), columns turn round, so that the
- * grid's normals still point the same way in or out. */
+/* Copies source mirrored about x = 0, so that the grid's normals still point the same way in or out: rows
+ * of a linear muscle stay (row 0 is the fixed end) and columns turn round; columns of a sphincter stay
+ * (outer to inner) and rows turn round. */
 static ris_result copy_mirrored(const ris_muscle_def *source, const char *file, ris_muscle_def *def,
                                 ris_error *err)
 {
@@ -255,11 +270,14 @@ static ris_result copy_mirrored(const ris_muscle_def *source, const char *file, 
     if (source->au_count) {
         memcpy(def->au, source->au, source->au_count * sizeof *def->au);
     }
+    const bool linear = source->kind == RIS_MUSCLE_LINEAR;
     for (uint32_t row = 0; row < source->rows; row++) {
         for (uint32_t c = 0; c < source->columns; c++) {
+            const uint32_t to_row = linear ? row : source->rows - 1 - row;
+            const uint32_t to_column = linear ? source->columns - 1 - c : c;
             ris_vec3 p = source->grid[(size_t)row * source->columns + c];
             p.x = -p.x;
-            def->grid[(size_t)row * source->columns + (source->columns - 1 - c)] = p;
+            def->grid[(size_t)to_row * source->columns + to_column] = p;
         }
     }
     def->axis[0].x = -def->axis[0].x;

@@ -1,4 +1,6 @@
-/* muscle_contract: KA-31 linear and KA-32 sphincter contraction of every fibre. */
+/* muscle_contract: KA-31 linear and KA-32 sphincter contraction of every fibre. Beyond the thesis, a
+ * sphincter may close on a line: the eyelids' corners are held by ligaments, so its fibres draw together
+ * across the slit between them. */
 #include "sim/rig.h"
 
 #include "model/vec3.h"
@@ -49,6 +51,26 @@ ris_vec3 ris__contract_sphincter(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, float a, 
     return v3_mad(centre, 1.0f - c, v3_sub(p, centre));
 }
 
+ris_vec3 ris__contract_slit(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, float c)
+{
+    const ris_vec3 axis = v3_sub(a1, a0);
+    const float length2 = v3_dot(axis, axis);
+    const float t = length2 > 0.0f ? f_clamp(v3_dot(axis, v3_sub(p, a0)) / length2, 0.0f, 1.0f) : 0.0f;
+    return v3_lerp(p, v3_mad(a0, t, axis), c);
+}
+
+/* Point p of fibre f of a sphincter. */
+static ris_vec3 contract_ring(const ris_muscle *muscle, const ris_vec3 axis[2], ris_vec3 p, uint32_t f,
+                              float c)
+{
+    if (!(c > 0.0f)) {
+        return p;
+    }
+    return muscle->def->closes_on_line
+               ? ris__contract_slit(p, axis[0], axis[1], c)
+               : ris__contract_sphincter(p, axis[0], axis[1], 1.0f, f, muscle->fiber_count, c);
+}
+
 void ris__muscle_contract(ris_rig *rig, const float *pose)
 {
     const ris_model *model = rig->model;
@@ -72,10 +94,7 @@ void ris__muscle_contract(ris_rig *rig, const float *pose)
                 continue;
             }
             for (uint32_t i = 0; i < muscle->point_count; ++i) {
-                const ris_vec3 p = rig->p[first + i];
-                rig->q[first + i] =
-                    c > 0.0f ? ris__contract_sphincter(p, axis[0], axis[1], 1.0f, f, muscle->fiber_count, c)
-                             : p;
+                rig->q[first + i] = contract_ring(muscle, axis, rig->p[first + i], f, c);
             }
         }
     }

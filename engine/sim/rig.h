@@ -65,6 +65,8 @@ void ris__contract_linear(const ris_vec3 *p, uint32_t n, float c, ris_vec3 *q);
 /* KA-32. Point p of fibre j of f (0 outermost), axis a0-a1, position a on it. */
 ris_vec3 ris__contract_sphincter(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, float a, uint32_t j, uint32_t f,
                                  float c);
+/* A sphincter that closes on a line: p goes the share c of its way to the nearest point of a0-a1. */
+ris_vec3 ris__contract_slit(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, float c);
 /* KA-33. Moves n points to their rest distance from the centroid weighted with 1 + lambda c; rest gives
  * the fallback direction. Returns the centroid. */
 ris_vec3 ris__resolve_group(uint32_t n, const float *contraction, const float *rest_distance_mm,

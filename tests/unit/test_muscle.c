@@ -91,6 +91,17 @@ static void sphincter_contraction(void **state) /* KA-32 */
                  1e-5f); /* no axis: towards its point */
 }
 
+static void slit_contraction(void **state)
+{
+    (void)state;
+    const ris_vec3 a0 = {-10, 0, 2}, a1 = {10, 0, 2};
+    assert_point(ris__contract_slit(v3(5, 8, 2), a0, a1, 0.25f), 5, 6, 2, 1e-5f); /* across the slit */
+    assert_point(ris__contract_slit(v3(-5, -8, 6), a0, a1, 0.5f), -5, -4, 4, 1e-5f);
+    assert_point(ris__contract_slit(v3(14, 4, 2), a0, a1, 0.25f), 13, 3, 2, 1e-5f); /* beyond: to its end */
+    assert_point(ris__contract_slit(v3(10, 0, 2), a0, a1, 0.3f), 10, 0, 2, 1e-5f);  /* the corner stays */
+    assert_point(ris__contract_slit(v3(4, 0, 0), a0, a0, 0.5f), -3, 0, 1, 1e-5f);   /* no axis: its point */
+}
+
 static void group_resolution(void **state) /* KA-33 */
 {
     (void)state;
@@ -369,6 +380,7 @@ int main(void)
         cmocka_unit_test(jaw_rotation),
         cmocka_unit_test(linear_contraction),
         cmocka_unit_test(sphincter_contraction),
+        cmocka_unit_test(slit_contraction),
         cmocka_unit_test(group_resolution),
         cmocka_unit_test(relax_weight),
         cmocka_unit_test(bulge_factors),

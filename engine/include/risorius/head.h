@@ -39,6 +39,7 @@ typedef struct ris_muscle_def {
     ris_vec3 *grid;          /* row 0 = fixed end, mm (rows x columns) */
     ris_vec3 axis[2];        /* sphincter axis a0, a1, mm */
     bool has_axis;
+    bool closes_on_line;     /* sphincter: contracts towards the axis as a slit (eyelids), not towards a point */
     float thickness_mm[2];   /* min, max */
     float max_shortening;    /* contraction at activation 1, 0..0.30; may be 0 for a passive carrier */
     float radius_mm;         /* influence beyond the muscle depth (R of spec/prototype.md 5) */
