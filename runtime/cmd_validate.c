@@ -10,6 +10,7 @@
 #include <string.h>
 
 #define TICKS 30u
+#define RISE 15u  /* ticks until all muscles are contracted */
 #define SIDE 128u /* pixels of the trial picture */
 
 typedef struct check {
@@ -17,11 +18,11 @@ typedef struct check {
     char detail[700];
 } check;
 
-/* All muscles contract over the first half and hold. */
+/* All muscles contract over RISE ticks and hold. */
 static void contract_all(void *user, uint32_t tick, float *out_pose)
 {
     const ris_model *model = user;
-    float share = tick < TICKS / 2 ? (float)tick / (float)(TICKS / 2) : 1.0f;
+    float share = tick < RISE ? (float)tick / (float)RISE : 1.0f;
     for (uint32_t i = 0; i < model->channel_count; i++) {
         out_pose[i] = i < model->muscle_count ? share * model->channel[i].maximum : 0.0f;
     }
