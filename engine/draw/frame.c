@@ -122,7 +122,8 @@ static void record_shadow(const ris_draw *draw, VkCommandBuffer cmd, const ris_s
     vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, draw->pipe[RIS_DRAW_PIPE_SHADOW]);
     for (uint32_t i = 0; i < draw->scene.item_count; i++) {
         const ris_draw_item *item = &draw->scene.item[i];
-        if (item->material != RIS_MATERIAL_CORNEA && item->material != RIS_MATERIAL_HAIR) {
+        /* lips and lids cast the shadows that matter; what is behind them is darkened by its own shader */
+        if (item->material == RIS_MATERIAL_SKIN) {
             draw_item(draw, cmd, sim, item);
         }
     }

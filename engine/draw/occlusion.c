@@ -40,8 +40,8 @@ static void aim(view *to, ris_vec3 z)
 
 static ris_vec3 project(const view *in, ris_vec3 p)
 {
-    return (ris_vec3){(dot(p, in->x) - in->cx) * in->scale + SIDE / 2,
-                      (dot(p, in->y) - in->cy) * in->scale + SIDE / 2, dot(p, in->z)};
+    return (ris_vec3){(dot(p, in->x) - in->cx) * in->scale + 0.5f * SIDE,
+                      (dot(p, in->y) - in->cy) * in->scale + 0.5f * SIDE, dot(p, in->z)};
 }
 
 static int clamp_pixel(float at)

@@ -120,8 +120,6 @@ static ris_result create_graphics(ris_draw *draw, ris_error *err)
     def[RIS_DRAW_PIPE_SKIN] = picture_def(draw, RIS_VK_CODE(ris_spv_skin_frag), "draw skin");
     def[RIS_DRAW_PIPE_EYE] = picture_def(draw, RIS_VK_CODE(ris_spv_eye_frag), "draw eye");
     def[RIS_DRAW_PIPE_MOUTH] = picture_def(draw, RIS_VK_CODE(ris_spv_mouth_frag), "draw mouth");
-    def[RIS_DRAW_PIPE_MOUTH].cull =
-        VK_CULL_MODE_NONE; /* an open mouth looks into gums and teeth from behind */
     def[RIS_DRAW_PIPE_HAIR] = picture_def(draw, RIS_VK_CODE(ris_spv_hair_frag), "draw hair");
     def[RIS_DRAW_PIPE_HAIR].cull = VK_CULL_MODE_NONE;
     def[RIS_DRAW_PIPE_HAIR].blend = true;

@@ -312,7 +312,7 @@ static bool make_quads(const topology *top, uint32_t levels, ris_refined *out, r
 {
     const ris_mesh *mesh = top->mesh;
     size_t room = mesh->face_start[mesh->face_count]; /* at least as many as quads, either way */
-    ris_draw_corner *raw = malloc((4 * room + 1) * sizeof *raw);
+    ris_draw_corner *raw = calloc(4 * room + 1, sizeof *raw);
     out->quad = malloc((4 * room + 1) * sizeof *out->quad);
     out->quad_face = malloc((room + 1) * sizeof *out->quad_face);
     *out_raw = raw;
@@ -338,7 +338,7 @@ static bool make_index(ris_refined *out, const ris_draw_corner *raw)
     size_t count = 4 * (size_t)out->quad_count;
     uint32_t *head = malloc((out->vertex_count + 1) * sizeof *head),
              *link = malloc((count + 1) * sizeof *link);
-    uint32_t *merged = malloc((count + 1) * sizeof *merged);
+    uint32_t *merged = calloc(count + 1, sizeof *merged);
     out->corner = malloc((count + 1) * sizeof *out->corner);
     out->index = malloc((6 * (size_t)out->quad_count + 1) * sizeof *out->index);
     bool good = head && link && merged && out->corner && out->index;

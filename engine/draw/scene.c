@@ -44,12 +44,10 @@ static bool is_mouth(ris_material material)
     return material == RIS_MATERIAL_TEETH || material == RIS_MATERIAL_GUM || material == RIS_MATERIAL_TONGUE;
 }
 
+/* Rigid parts are modelled as fine as they need to be. */
 static uint32_t levels_for(const piece *from)
 {
-    if (from->part == NULL) {
-        return from->mesh->face_count <= REFINE_LIMIT ? 1 : 0;
-    }
-    return from->part->material == RIS_MATERIAL_TONGUE || from->part->material == RIS_MATERIAL_GUM ? 1 : 0;
+    return from->part == NULL && from->mesh->face_count <= REFINE_LIMIT ? 1 : 0;
 }
 
 static ris_result build_piece(const ris_model *model, piece *to, ris_error *err)
@@ -321,24 +319,41 @@ static void find_mouth(ris_draw_scene *out, const piece *all, uint32_t count)
     out->mouth = (ris_vec4){front > -FLT_MAX ? front : 0.0f, 32.0f, 0.0f, 0.0f};
 }
 
-/* The two nodes in the middle of the mouth that face each other nearest, one looking down, one up. */
-static void find_lips(ris_draw_scene *out, const ris_model *model)
+/* The two nodes of the lips near x that face each other nearest, one looking down, one up. */
+static void find_lip_pair(const ris_model *model, const ris_region *lips, float x, uint32_t out[2])
 {
-    const ris_region *lips = ris_head_region(model->head, "lips");
     float nearest = 6.0f * 6.0f;
-    for (uint32_t i = 0; lips != NULL && i < lips->count; i++) {
+    for (uint32_t i = 0; i < lips->count; i++) {
         uint32_t a = lips->vertex[i];
         ris_vec4 p = model->rest_position[a];
-        for (uint32_t k = 0; k < lips->count && fabsf(p.x) < 3.0f && model->rest_normal[a].y < -0.4f; k++) {
+        for (uint32_t k = 0; k < lips->count && fabsf(p.x - x) < 3.0f && model->rest_normal[a].y < -0.4f;
+             k++) {
             uint32_t b = lips->vertex[k];
             ris_vec4 q = model->rest_position[b];
             float dx = p.x - q.x, dy = p.y - q.y, dz = p.z - q.z, d2 = 9.0f * dx * dx + dy * dy + dz * dz;
             if (model->rest_normal[b].y > 0.4f && dy > 0.0f && d2 < nearest) {
                 nearest = d2;
-                out->lip[0] = a;
-                out->lip[1] = b;
+                out[0] = a;
+                out[1] = b;
             }
         }
+    }
+}
+
+/* Three places where the opening of the mouth is measured: the middle and half way to the corners. */
+static void find_lips(ris_draw_scene *out, const ris_model *model)
+{
+    const ris_region *lips = ris_head_region(model->head, "lips");
+    float widest = 0.0f;
+    for (uint32_t i = 0; lips != NULL && i < lips->count; i++) {
+        widest = fmaxf(widest, fabsf(model->rest_position[lips->vertex[i]].x));
+    }
+    for (int k = 0; k < 3 && lips != NULL; k++) {
+        uint32_t *lip = out->lip + 2 * k;
+        find_lip_pair(model, lips, (float)(k - 1) * 0.55f * widest, lip);
+        ris_vec4 p = out->position[lip[0]], q = out->position[lip[1]];
+        float dx = p.x - q.x, dy = p.y - q.y, dz = p.z - q.z;
+        out->apart[k] = sqrtf(dx * dx + dy * dy + dz * dz);
     }
 }
 

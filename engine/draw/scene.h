@@ -33,7 +33,8 @@ typedef struct ris_draw_scene {
     ris_draw_item *item;  /* skin first, then opaque parts, hair, clear parts (item_count) */
     const char **texture; /* paths, each once, owned by the head (texture_count) */
     ris_vec4 mouth;       /* as in ris_draw_view */
-    uint32_t lip[2];
+    uint32_t lip[6];
+    float apart[3];
     float fade[2];
     ris_vec3 low, high; /* bounds of everything at rest, mm */
 } ris_draw_scene;

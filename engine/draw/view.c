@@ -150,6 +150,7 @@ void ris__draw_view_fill(const ris_draw *draw, const ris_camera *camera, const f
     light_rows((ris_vec3){out->light[0].x, out->light[0].y, out->light[0].z}, centre, radius, out->shadow);
     out->mouth = scene->mouth;
     memcpy(out->lip, scene->lip, sizeof out->lip);
+    memcpy(out->apart, scene->apart, sizeof out->apart);
     memcpy(out->fade, scene->fade, sizeof out->fade);
     out->size = (ris_vec4){(float)draw->target.width, (float)draw->target.height, (float)RIS_DRAW_SHADOW_SIDE,
                            2.0f * radius / (float)RIS_DRAW_SHADOW_SIDE};

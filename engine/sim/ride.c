@@ -265,7 +265,7 @@ ris_result ris_sim_part(const ris_sim *sim, uint32_t part, const ris_vec4 *posit
     const ris_part_def *def = &model->head->part[part];
     const ris_mesh *mesh = &def->mesh;
     if (def->bone == RIS_BONE_SKIN) {
-        ris_ride *ride = malloc((mesh->vertex_count + 1) * sizeof *ride);
+        ris_ride *ride = calloc((size_t)mesh->vertex_count + 1, sizeof *ride);
         if (ride == NULL) {
             return ris_fail(err, RIS_ERROR_MEMORY, "out of memory for part \"%s\"", def->name);
         }

@@ -13,11 +13,14 @@ layout(location = 0) out vec4 out_color;
 
 void main()
 {
-    vec3 n = normalize(gl_FrontFacing ? in_normal : -in_normal), v = normalize(view.eye.xyz - in_world);
+    vec3 n = normalize(in_normal), v = normalize(view.eye.xyz - in_world);
     vec3 albedo = base_color(in_uv);
     float depth = max(0.0, view.mouth.x - in_rest.z) / view.mouth.y;
-    float gap = distance(at[view.lip[0]].xyz, at[view.lip[1]].xyz);
-    float parted = view.lip[0] == view.lip[1] ? 1.0 : clamp(0.07 + (gap - 0.7) / 2.2, 0.07, 1.0);
+    float gap = 0.0;
+    for (int k = 0; k < 3; k++) {
+        gap = max(gap, distance(at[view.lip[2 * k]].xyz, at[view.lip[2 * k + 1]].xyz) - view.apart[k]);
+    }
+    float parted = view.lip[2] == view.lip[3] ? 1.0 : clamp(0.04 + gap / 2.2, 0.04, 1.0);
     float open = (exp(-1.05 * depth) + 0.03) * parted;
     vec3 diffuse = vec3(0.0), shine = vec3(0.0);
     for (int k = 0; k < 2; k++) {

@@ -87,8 +87,9 @@ RIS_DRAW_STRUCT(ris_draw_view)
         light[3]; /* key, fill, rim: unit direction towards the light, w = half angle of the lamp, radians */
     ris_draw_v4 radiance[3]; /* linear RGB, w unused */
     ris_draw_v4 sky, ground; /* ambient from above and below, linear RGB */
-    ris_draw_v4 mouth;       /* x = depth of the teeth's front at rest, mm; y = fall-off, mm */
-    ris_draw_uint lip[2]; /* surface vertices in the middle of the upper and lower lip's edge; equal = none */
+    ris_draw_v4 mouth;       /* x = depth of the teeth's front at rest, mm; y = fall-off, mm; zw unused */
+    ris_draw_uint lip[6];    /* three pairs of surface vertices, upper and lower lip; equal = none */
+    ris_draw_float apart[3]; /* distance of each pair at rest, mm */
     ris_draw_float
         fade[2];      /* the bust melts into the backdrop between these heights at rest, mm; equal = never */
     ris_draw_v4 size; /* width, height in pixels, shadow texels per side, mm per shadow texel */
