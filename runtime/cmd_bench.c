@@ -215,22 +215,38 @@ static void print_result(bench_run *bench, const ris_cli *cli, const bench_args 
     print_times(bench, cli, args);
 }
 
+/* clips/first_light.json beside the head folder; "" if there is none. */
+static void find_clip(const char *head, char *out, size_t size)
+{
+    size_t length = head ? strlen(head) : 0;
+    while (length > 0 && head[length - 1] == '/') {
+        length--;
+    }
+    size_t parent = length;
+    while (parent > 0 && head[parent - 1] != '/') {
+        parent--;
+    }
+    bool named = length > parent && head[length - 1] != '.'; /* not "." or ".." */
+    int written = snprintf(out, size, "%.*s%sclips/first_light.json", (int)(named ? parent : length),
+                           head ? head : "", named ? "" : "/../");
+    if (!head || written < 0 || (size_t)written >= size || access(out, R_OK) != 0) {
+        out[0] = '\0';
+    }
+}
+
 /* The clip given, else clips/first_light.json beside the head, else none. */
 static ris_result open_clip(bench_run *bench, const bench_args *args, ris_error *err)
 {
-    const ris_model *model = bench->backend.model;
     bench->ticks = 330;
     if (args->clip) {
         snprintf(bench->clip_path, sizeof bench->clip_path, "%s", args->clip);
     } else {
-        int length = args->head ? snprintf(bench->clip_path, sizeof bench->clip_path,
-                                           "%s/../clips/first_light.json", args->head)
-                                : 0;
-        if (length <= 0 || (size_t)length >= sizeof bench->clip_path || access(bench->clip_path, R_OK) != 0) {
-            return RIS_OK;
-        }
+        find_clip(args->head, bench->clip_path, sizeof bench->clip_path);
     }
-    ris_result r = ris_clip_load(model, bench->clip_path, &bench->clip, err);
+    if (bench->clip_path[0] == '\0') {
+        return RIS_OK;
+    }
+    ris_result r = ris_clip_load(bench->backend.model, bench->clip_path, &bench->clip, err);
     if (!r) {
         bench->ticks = (uint32_t)player_tick_at(ris_clip_duration_s(bench->clip));
     }

@@ -33,7 +33,7 @@ static void print_text(const char *path, const ris_model *model)
     printf("muscles\n");
     for (uint32_t i = 0; i < model->muscle_count; i++) {
         const ris_muscle *m = &model->muscle[i];
-        printf("  %-32s %-9s on %-6s %2u fibres x %2u points, shortens to %2.0f %%, acts on %u nodes\n",
+        printf("  %-32s %-9s on %-6s %2u fibres x %2u points, shortens by up to %2.0f %%, acts on %u nodes\n",
                m->name, m->kind == RIS_MUSCLE_LINEAR ? "linear" : "sphincter", m->on_jaw ? "jaw" : "skull",
                m->fiber_count, m->point_count, (double)m->max_shortening * 100.0, muscle_nodes(model, i));
     }

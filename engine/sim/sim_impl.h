@@ -12,7 +12,8 @@ typedef struct ris_anchor_frame {
 typedef struct ris_sim_impl {
     void (*destroy)(void *self);
     /* uploads the anchors, runs anchor_shift, substeps x (bend, spring_force, verlet), normal; returns when done */
-    ris_result (*frame)(void *self, const ris_anchor_frame *anchors, uint32_t substeps, ris_sim_times *times, ris_error *err);
+    ris_result (*frame)(void *self, const ris_anchor_frame *anchors, uint32_t substeps, ris_sim_times *times,
+                        ris_error *err);
     /* runs one stage once on the present state (parity tests); anchors NULL = keep those last uploaded */
     ris_result (*stage)(void *self, ris_stage stage, const ris_anchor_frame *anchors, ris_error *err);
     ris_result (*read)(void *self, ris_state state, ris_vec4 *out, ris_error *err);
@@ -20,8 +21,8 @@ typedef struct ris_sim_impl {
 } ris_sim_impl;
 
 /* Wraps a backend in the front; takes ownership of self. backend_name is copied. */
-ris_result ris__sim_create(const ris_model *model, const ris_sim_impl *impl, void *self, const char *backend_name,
-                           ris_sim **out, ris_error *err);
+ris_result ris__sim_create(const ris_model *model, const ris_sim_impl *impl, void *self,
+                           const char *backend_name, ris_sim **out, ris_error *err);
 /* The backend object of a sim if it is of this impl, else NULL. */
 void *ris__sim_self(ris_sim *sim, const ris_sim_impl *impl);
 /* Runs one stage through the front (parity tests, compare). */

@@ -28,7 +28,14 @@ typedef struct ris_region {
 } ris_region;
 
 typedef enum ris_muscle_kind { RIS_MUSCLE_LINEAR, RIS_MUSCLE_SPHINCTER } ris_muscle_kind;
-typedef enum ris_bone { RIS_BONE_AUTO, RIS_BONE_SKULL, RIS_BONE_JAW, RIS_BONE_EYE_L, RIS_BONE_EYE_R, RIS_BONE_SKIN } ris_bone;
+typedef enum ris_bone {
+    RIS_BONE_AUTO,
+    RIS_BONE_SKULL,
+    RIS_BONE_JAW,
+    RIS_BONE_EYE_L,
+    RIS_BONE_EYE_R,
+    RIS_BONE_SKIN
+} ris_bone;
 
 /* One muscle of muscles.json, mirrored records already expanded (KA-38, KA-44). */
 typedef struct ris_muscle_def {
@@ -36,38 +43,43 @@ typedef struct ris_muscle_def {
     ris_muscle_kind kind;
     ris_bone bone; /* AUTO, SKULL or JAW */
     uint32_t rows, columns;
-    ris_vec3 *grid;          /* row 0 = fixed end, mm (rows x columns) */
-    ris_vec3 axis[2];        /* sphincter axis a0, a1, mm */
+    ris_vec3 *grid;   /* row 0 = fixed end, mm (rows x columns) */
+    ris_vec3 axis[2]; /* sphincter axis a0, a1, mm */
     bool has_axis;
-    bool closes_on_line;     /* sphincter: contracts towards the axis as a slit (eyelids), not towards a point */
-    float thickness_mm[2];   /* min, max */
-    float max_shortening;    /* contraction at activation 1, 0..0.30; may be 0 for a passive carrier */
-    float radius_mm;         /* influence beyond the muscle depth (R of spec/prototype.md 5) */
-    float insertion_start;   /* t0 of the insertion profile along the fibre, 0..1 */
-    float lip_drag_power;    /* > 0: the end pulls the lip corner, drag along the oris is t^power; 0 = no pull */
-    float gain;              /* factor on the weight, 1.2 in spec/prototype.md 5 */
+    bool closes_on_line; /* sphincter: contracts towards the axis as a slit (eyelids), not towards a point */
+    float thickness_mm[2]; /* min, max */
+    float max_shortening;  /* contraction at activation 1, 0..0.30; may be 0 for a passive carrier */
+    float radius_mm;       /* influence beyond the muscle depth (R of spec/prototype.md 5) */
+    float insertion_start; /* t0 of the insertion profile along the fibre, 0..1 */
+    float lip_drag_power; /* > 0: the end pulls the lip corner, drag along the oris is t^power; 0 = no pull */
+    float gain;           /* factor on the weight, 1.2 in spec/prototype.md 5 */
     bool attach_auto;
     uint32_t attach_count;
     uint32_t *attach; /* skin vertices when attach_auto is false (attach_count) */
     uint32_t au_count;
-    char (*au)[16];               /* "AU12" (au_count) */
+    char (*au)[16];                    /* "AU12" (au_count) */
     char *origin, *insertion, *source; /* anatomical text, may be empty, never NULL */
 } ris_muscle_def;
 
 typedef enum ris_material {
-    RIS_MATERIAL_SKIN, RIS_MATERIAL_EYE, RIS_MATERIAL_CORNEA, RIS_MATERIAL_TEETH, RIS_MATERIAL_GUM,
-    RIS_MATERIAL_TONGUE, RIS_MATERIAL_HAIR
+    RIS_MATERIAL_SKIN,
+    RIS_MATERIAL_EYE,
+    RIS_MATERIAL_CORNEA,
+    RIS_MATERIAL_TEETH,
+    RIS_MATERIAL_GUM,
+    RIS_MATERIAL_TONGUE,
+    RIS_MATERIAL_HAIR
 } ris_material;
 
 /* A rigid or skin-bound component: eyes, teeth, tongue, lashes, brows (KA-06). */
 typedef struct ris_part_def {
     char name[RIS_NAME_SIZE];
     ris_mesh mesh;
-    ris_bone bone;      /* SKULL, JAW, EYE_L, EYE_R, or SKIN = rides on the nearest skin triangle */
-    ris_vec3 pivot;     /* mm, centre of rotation of an eye */
+    ris_bone bone;  /* SKULL, JAW, EYE_L, EYE_R, or SKIN = rides on the nearest skin triangle */
+    ris_vec3 pivot; /* mm, centre of rotation of an eye */
     ris_material material;
-    char *color;        /* path of its texture, or NULL */
-    ris_vec3 tint;      /* linear RGB when there is no texture */
+    char *color;   /* path of its texture, or NULL */
+    ris_vec3 tint; /* linear RGB when there is no texture */
 } ris_part_def;
 
 typedef struct ris_jaw_def {
@@ -86,16 +98,16 @@ typedef struct ris_anchor_region {
 /* Numbers of the skin model (KA-10..18; spec/prototype.md 5). ris_default_tissue() fills all. */
 typedef struct ris_tissue_def {
     ris_tissue_model model;
-    float density_kg_m3, skin_mm; /* KA-13, kaehler mass */
-    float modulus[2];             /* g/s^2: low, high (KA-12) */
-    float switch_stretch;         /* 1.5 */
-    bool continuous;              /* continuous biphasic law; false = the thesis's jump */
-    float compression;            /* factor on the modulus when shorter than rest */
-    float bending;                /* g/s^2 */
-    float stiffness_scale;        /* factor on all stiffness */
-    float damping_per_s;          /* gamma / m of the risorius tissue */
-    float damping_g_s;            /* gamma of the kaehler tissue */
-    float mass_g;                 /* uniform node mass of the risorius tissue */
+    float density_kg_m3, skin_mm;     /* KA-13, kaehler mass */
+    float modulus[2];                 /* g/s^2: low, high (KA-12) */
+    float switch_stretch;             /* 1.5 */
+    bool continuous;                  /* continuous biphasic law; false = the thesis's jump */
+    float compression;                /* factor on the modulus when shorter than rest */
+    float bending;                    /* g/s^2 */
+    float stiffness_scale;            /* factor on all stiffness */
+    float damping_per_s;              /* gamma / m of the risorius tissue */
+    float damping_g_s;                /* gamma of the kaehler tissue */
+    float mass_g;                     /* uniform node mass of the risorius tissue */
     float bone_anchor, muscle_anchor; /* kaehler: 30, 10 g/s^2 */
     float muscle_radius_mm;           /* kaehler: 10 mm */
     float constraint_lambda;          /* 30 (KA-33) */
