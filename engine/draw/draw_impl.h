@@ -35,7 +35,7 @@ typedef struct ris_draw_store {
     ris_vk_buffer node; /* uploaded positions of a simulation elsewhere (UPLOAD) */
     ris_vk_buffer view; /* ris_draw_view (UPLOAD) */
     ris_vk_buffer term_start, term, ring_start, ring, ride;
-    ris_vk_buffer position, normal, rest, corner, index, line;
+    ris_vk_buffer position, normal, rest, corner, index, line, cast;
     ris_vk_image *texture; /* (texture_count + 1), the last one white */
     ris_vk_image *detail;  /* beside each texture; without handle where there is none; the last one flat */
     uint32_t texture_count;

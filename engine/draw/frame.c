@@ -120,13 +120,12 @@ static void record_shadow(const ris_draw *draw, VkCommandBuffer cmd, const ris_s
     vkCmdBeginRendering(cmd, &info);
     set_area(cmd, RIS_DRAW_SHADOW_SIDE, RIS_DRAW_SHADOW_SIDE);
     vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, draw->pipe[RIS_DRAW_PIPE_SHADOW]);
-    for (uint32_t i = 0; i < draw->scene.item_count; i++) {
-        const ris_draw_item *item = &draw->scene.item[i];
-        /* lips and lids cast the shadows that matter; what is behind them is darkened by its own shader */
-        if (item->material == RIS_MATERIAL_SKIN) {
-            draw_item(draw, cmd, sim, item);
-        }
-    }
+    /* lips and lids cast the shadows that matter; what is behind them is darkened by its own shader */
+    ris_draw_item skin = draw->scene.item[0];
+    skin.first_index = 0;
+    skin.index_count = draw->scene.cast_count;
+    vkCmdBindIndexBuffer(cmd, draw->store.cast.handle, 0, VK_INDEX_TYPE_UINT32);
+    draw_item(draw, cmd, sim, &skin);
     vkCmdEndRendering(cmd);
     ris_vk_image_barrier(cmd, draw->shadow.handle, VK_IMAGE_ASPECT_DEPTH_BIT, target, sampled);
 }
@@ -223,8 +222,8 @@ static ris_result draw_nodes(ris_draw *draw, ris_sim *sim, VkBuffer buffer, VkDe
                    VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
                    VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
     record_surface(draw, cmd);
-    vkCmdBindIndexBuffer(cmd, draw->store.index.handle, 0, VK_INDEX_TYPE_UINT32);
     record_shadow(draw, cmd, sim);
+    vkCmdBindIndexBuffer(cmd, draw->store.index.handle, 0, VK_INDEX_TYPE_UINT32);
     record_picture(draw, cmd, sim);
     RIS_TRY(ris_vk_cmd_run(draw->device, &draw->cmd, err));
     draw->drawn = true;

@@ -274,6 +274,29 @@ static void add_lines(ris_draw_scene *out, const ris_refined *skin)
     }
 }
 
+/* The coarse faces with their corners on the drawn surface: a quarter of the triangles, and less than the shadow's bias
+ * away. Level 0 is coarse already. */
+static void add_cast(ris_draw_scene *out, const ris_refined *skin, uint32_t levels)
+{
+    if (levels == 0) {
+        memcpy(out->cast, skin->index, skin->index_count * sizeof *out->cast);
+        out->cast_count = skin->index_count;
+        return;
+    }
+    for (uint32_t first = 0, end; first < skin->quad_count; first = end) {
+        end = first + 1;
+        while (end < skin->quad_count && skin->quad_face[end] == skin->quad_face[first]) {
+            end++;
+        }
+        for (uint32_t q = first + 1; q + 1 < end;
+             q++) { /* quads of a refined face begin at its corners, six indices each */
+            out->cast[out->cast_count++] = skin->index[6 * (size_t)first];
+            out->cast[out->cast_count++] = skin->index[6 * (size_t)q];
+            out->cast[out->cast_count++] = skin->index[6 * (size_t)q + 6];
+        }
+    }
+}
+
 static bool reserve(ris_draw_scene *out, const piece *all, uint32_t count)
 {
     size_t vertices = 0, corners = 0, indices = 0, rides = 0;
@@ -288,14 +311,15 @@ static bool reserve(ris_draw_scene *out, const piece *all, uint32_t count)
     out->rest = room(vertices, sizeof *out->rest);
     out->corner = room(corners, sizeof *out->corner);
     out->index = room(indices, sizeof *out->index);
+    out->cast = room(all[0].refined.index_count, sizeof *out->cast);
     out->line = room(4 * (size_t)all[0].refined.quad_count, sizeof *out->line);
     out->ride = room(rides, sizeof *out->ride);
     out->item = room(count, sizeof *out->item);
     out->texture = room(count, sizeof *out->texture);
     out->low = (ris_vec3){FLT_MAX, FLT_MAX, FLT_MAX};
     out->high = (ris_vec3){-FLT_MAX, -FLT_MAX, -FLT_MAX};
-    return out->position && out->normal && out->rest && out->corner && out->index && out->line && out->ride &&
-           out->item && out->texture;
+    return out->position && out->normal && out->rest && out->corner && out->index && out->cast && out->line &&
+           out->ride && out->item && out->texture;
 }
 
 /* Drawing order: opaque first, hair next, clear shells last. */
@@ -391,6 +415,7 @@ static ris_result assemble(const ris_model *model, piece *all, uint32_t count, r
         }
     }
     add_lines(out, &all[0].refined);
+    add_cast(out, &all[0].refined, levels_for(&all[0]));
     find_mouth(out, all, count);
     find_lips(out, model);
     find_fade(out, model);
@@ -451,6 +476,7 @@ void ris__draw_scene_finish(ris_draw_scene *scene)
     free(scene->corner);
     free(scene->index);
     free(scene->line);
+    free(scene->cast);
     free(scene->ride);
     free(scene->item);
     free((void *)scene->texture);

@@ -18,7 +18,7 @@ typedef struct ris_draw_scene {
     uint32_t skin_count;   /* surface vertices of the skin, the first ones */
     uint32_t vertex_count; /* surface vertices in all */
     uint32_t term_count, corner_count, index_count, line_count, ride_count, item_count, texture_count,
-        ring_count;
+        ring_count, cast_count;
     uint32_t *term_start; /* (skin_count + 1) */
     ris_draw_term *term;  /* (term_count) */
     uint32_t *ring_start; /* (skin_count + 1) */
@@ -27,8 +27,9 @@ typedef struct ris_draw_scene {
     ris_vec4 *normal;     /* at rest, w 0 (vertex_count) */
     ris_vec4 *rest;       /* position at rest, w = visible share of the surroundings (vertex_count) */
     ris_draw_corner *corner;
-    uint32_t *index;      /* triangles into corner (index_count) */
-    uint32_t *line;       /* edges of the simulated skin mesh, pairs into corner (line_count) */
+    uint32_t *index; /* triangles into corner (index_count) */
+    uint32_t *cast;  /* coarser triangles of the skin for the key light's depth, into corner (cast_count) */
+    uint32_t *line;  /* edges of the simulated skin mesh, pairs into corner (line_count) */
     ris_draw_ride *ride;  /* (ride_count) */
     ris_draw_item *item;  /* skin first, then opaque parts, hair, clear parts (item_count) */
     const char **texture; /* paths, each once, owned by the head (texture_count) */

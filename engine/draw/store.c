@@ -97,6 +97,8 @@ ris_result ris__draw_store_create(ris_draw *draw, ris_error *err)
                  &store->corner, err));
     RIS_TRY(fill(device, "draw triangles", scene->index, (size_t)scene->index_count * 4, index, &store->index,
                  err));
+    RIS_TRY(
+        fill(device, "draw casters", scene->cast, (size_t)scene->cast_count * 4, index, &store->cast, err));
     RIS_TRY(fill(device, "draw lines", scene->line, (size_t)scene->line_count * 4, index, &store->line, err));
     RIS_TRY(ris_vk_image_create(device, &shadow, &draw->shadow, err));
     RIS_TRY(ris_vk_sampler_create(device, VK_SAMPLER_ADDRESS_MODE_REPEAT, 0.0f, &store->sampler, err));
@@ -113,7 +115,7 @@ void ris__draw_store_finish(ris_draw *draw)
     ris_vk_buffer *all[] = {&store->node,       &store->view, &store->term_start, &store->term,
                             &store->ring_start, &store->ring, &store->ride,       &store->position,
                             &store->normal,     &store->rest, &store->corner,     &store->index,
-                            &store->line};
+                            &store->line,       &store->cast};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
         ris_vk_buffer_finish(device, all[i]);
     }
