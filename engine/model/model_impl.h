@@ -4,7 +4,7 @@
 
 #include "risorius/model.h"
 
-#define RIS_GROUP_MAX 64 /* muscle points in one constraint group */
+#define RIS_GROUP_MAX 256 /* muscle points in one constraint group */
 
 /* Head as parsed plus what only the bake needs. */
 typedef struct ris_bake {

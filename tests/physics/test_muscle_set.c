@@ -86,13 +86,13 @@ static int close_head(void **state)
     return 0;
 }
 
-/* Muscles are the first channels. 0.5 s are enough: the slowest mode decays in 0.1 s. */
-static void hold(uint32_t muscle, float activation)
+/* Muscles are the first channels. The slowest mode decays in 0.1 s, six ticks. */
+static void hold(uint32_t muscle, float activation, int ticks)
 {
     memset(pose, 0, model->channel_count * sizeof *pose);
     pose[muscle] = activation;
     need(ris_sim_reset(sim, &err));
-    for (int i = 0; i < 30; ++i) {
+    for (int i = 0; i < ticks; ++i) {
         need(ris_sim_tick(sim, pose, &err));
     }
     need(ris_sim_read(sim, RIS_STATE_POSITION, x, &err));
@@ -141,7 +141,7 @@ static void every_muscle_moves_and_folds_nothing(void **state)
     (void)state;
     assert_true(model->muscle_count >= 40);
     for (uint32_t m = 0; m < model->muscle_count; ++m) {
-        hold(m, 1.0f);
+        hold(m, 1.0f, 20);
         const float most = largest_motion();
         if (most < 0.5f || most > 15.0f) {
             fail_msg("%s moves the skin by %.2f mm at most", model->muscle[m].name, (double)most);
@@ -172,9 +172,9 @@ static void sides_mirror(void **state)
         }
         memcpy(other, model->muscle[m].name, length + 1);
         other[length - 1] = 'R';
-        hold(m, 0.7f);
+        hold(m, 0.7f, 8);
         memcpy(left, x, model->node_count * sizeof *left);
-        hold(channel_index(other), 0.7f);
+        hold(channel_index(other), 0.7f, 8);
         float gap = 0.0f, lopsided = 0.0f;
         for (uint32_t i = 0; i < model->node_count; ++i) {
             if (mirror[i] != UINT32_MAX) {
@@ -267,7 +267,7 @@ static void muscles_do_what_they_are_named_for(void **state)
         {"orbicularis_oculi_palpebral.L", {32, 11, 85}, {0, 1, 0}},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
-        hold(channel_index(cases[k].muscle), 1.0f);
+        hold(channel_index(cases[k].muscle), 1.0f, 20);
         const ris_vec3 d = motion_at(cases[k].place);
         const float along = v3_dot(d, v3_unit_or(cases[k].direction, v3(0, 0, 0)));
         if (!(along > 0.8f && along > 0.5f * v3_length(d))) {
