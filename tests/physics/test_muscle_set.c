@@ -287,6 +287,31 @@ static void every_muscle_has_its_anatomy(void **state)
     }
 }
 
+/* The row of docs/anatomy.md that starts with the muscle's name, sides left off, tells its counts. */
+static void the_documentation_agrees(void **state)
+{
+    (void)state;
+    char line[1024], start[RIS_NAME_SIZE + 8], counts[64];
+    for (uint32_t m = 0; m < model->muscle_count; ++m) {
+        const ris_muscle *muscle = &model->muscle[m];
+        const char *dot = strchr(muscle->name, '.');
+        const int length = dot ? (int)(dot - muscle->name) : (int)strlen(muscle->name);
+        snprintf(start, sizeof start, "| `%.*s` |", length, muscle->name);
+        snprintf(counts, sizeof counts, "| %u x %u | %.0f %% |", muscle->fiber_count, muscle->point_count,
+                 100.0 * (double)muscle->max_shortening);
+        FILE *file = fopen(RIS_SOURCE_DIR "/docs/anatomy.md", "r");
+        assert_non_null(file);
+        bool agrees = false;
+        while (fgets(line, sizeof line, file)) {
+            agrees = agrees || (strncmp(line, start, strlen(start)) == 0 && strstr(line, counts));
+        }
+        fclose(file);
+        if (!agrees) {
+            fail_msg("docs/anatomy.md has no row of %s with %s", start, counts);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -295,6 +320,7 @@ int main(void)
         cmocka_unit_test(linear_muscles_shorten_as_told),
         cmocka_unit_test(muscles_do_what_they_are_named_for),
         cmocka_unit_test(every_muscle_has_its_anatomy),
+        cmocka_unit_test(the_documentation_agrees),
     };
     return cmocka_run_group_tests(tests, open_head, close_head);
 }
