@@ -1,4 +1,4 @@
-/* What a simulation needs of a mesh (models-to-follow 5.4): finite, no zero area, no isolated vertex,
+/* What a simulation needs of a mesh (docs/file-formats.md): finite, no zero area, no isolated vertex,
  * manifold, oriented. */
 #include "risorius/head.h"
 

@@ -1,4 +1,4 @@
-/* Names of muscles, channels and expressions (design, section 4). */
+/* Names of muscles, channels and expressions (docs/file-formats.md). */
 #include "asset/names.h"
 
 #include <ctype.h>

@@ -1,4 +1,4 @@
-/* How names look (design, section 4 "Names") and how a name finds its channels; used by head and clip
+/* How names look (docs/file-formats.md, Names) and how a name finds its channels; used by head and clip
  * readers. */
 #pragma once
 

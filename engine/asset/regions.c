@@ -1,4 +1,4 @@
-/* regions.json: named vertex ranges of the skin (design, section 4; KA-09 for the simulated one). */
+/* regions.json: named vertex ranges of the skin (docs/file-formats.md; KA-09 for the simulated one). */
 #include "asset/head_parts.h"
 #include "asset/names.h"
 

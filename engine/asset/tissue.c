@@ -1,5 +1,4 @@
-/* Tissue and jaw of head.json: KA-05, KA-10..18, KA-33 and the default tissue of spec/prototype.md section 5.
- * */
+/* Tissue and jaw of head.json: KA-05, KA-10..18, KA-33 and the default tissue of docs/physics.md. */
 #include "asset/head_parts.h"
 #include "asset/names.h"
 #include "base/text.h"

@@ -1,4 +1,4 @@
-/* KA-14, KA-15 and the anchors of the default tissue (spec/prototype.md 5): one anchor on every moving
+/* KA-14, KA-15 and the anchors of the default tissue (docs/physics.md): one anchor on every moving
  * node, its stiffness by region, smoothed over region borders and in proportion to the node's area. */
 #include "model_impl.h"
 #include "vec3.h"

@@ -1,4 +1,4 @@
-/* KA-42 muscle to skin. Default tissue (spec/prototype.md 5): every moving node within radius_mm of the
+/* KA-42 muscle to skin. Default tissue (docs/physics.md): every moving node within radius_mm of the
  * muscle, blended over the near segments, with an insertion profile along the fibre. kaehler tissue: the
  * one nearest attachment, distances divided by n_s . n_d. A node is never bound through the skin (n_s .
  * n_d <= 0), nor to a muscle of the other lip. */

@@ -1,5 +1,5 @@
-/* KA-09 moving nodes, KA-10 springs, KA-11 area ratio, KA-13 mass, the bending umbrella (spec/prototype.md
- * 5) and the stable time step (spec/kaehler.md 2.9). */
+/* KA-09 moving nodes, KA-10 springs, KA-11 area ratio, KA-13 mass, the bending umbrella and
+ * the stable time step (docs/physics.md). */
 #include "model_impl.h"
 #include "vec3.h"
 

@@ -1,4 +1,4 @@
-/* Labels on pictures (design 4 "Building"): stb_easy_font rasterised into an image, white with a dark edge. */
+/* Labels on pictures: stb_easy_font rasterised into an image, white with a dark edge. */
 #include "risorius/output.h"
 
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* OBJ writer (design 4 "Commands", export): vertex order, quads and UVs of the source mesh are kept, "%.6f" mm. */
+/* OBJ writer (`risorius export`): vertex order, quads and UVs of the source mesh are kept, "%.6f" mm. */
 #include "risorius/output.h"
 
 #include "base/file.h"

@@ -1,4 +1,4 @@
-/* PC2 vertex cache (issue 2, point 8): the 32-byte header, then point_count x 3 little-endian floats per sample.
+/* PC2 vertex cache: the 32-byte header, then point_count x 3 little-endian floats per sample.
  * Header: "POINTCACHE2\0", int32 version 1, int32 points, float start frame, float frames per sample, int32 samples. */
 #include "risorius/output.h"
 

@@ -1,4 +1,4 @@
-/* PNG (issue 2, point 8): encoded to memory by stb_image_write, then written whole and renamed. */
+/* PNG: encoded to memory by stb_image_write, then written whole and renamed. */
 #include "risorius/output.h"
 
 #include "base/file.h"

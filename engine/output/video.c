@@ -1,4 +1,4 @@
-/* Video by piping raw RGBA frames to the ffmpeg program (design 2 "video"): no shell, so any path is safe; ffmpeg
+/* Video by piping raw RGBA frames to the ffmpeg program: no shell, so any path is safe; ffmpeg
  * writes a temporary file beside the target that is renamed when the program has ended well. */
 #include "risorius/output.h"
 

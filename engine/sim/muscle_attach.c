@@ -1,7 +1,7 @@
 /* muscle_attach, last host stage: KA-37 attached points follow their segments; KA-14, KA-15 anchors of the
  * tick.
  *
- * Default tissue (spec/prototype.md 5), node at rest X, bindings (muscle, weight w, activity s in 0..1):
+ * Default tissue (docs/physics.md), node at rest X, bindings (muscle, weight w, activity s in 0..1):
  *     P      = X + sum w s delta / max(1, sum w s)          delta blended over the segments of the binding
  *              a pulled corner of the mouth adds delta = its displacement with weight w s t^p,
  *              t = 1 at the corner, 0 at the midline

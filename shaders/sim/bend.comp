@@ -1,4 +1,4 @@
-// bend (spec/prototype.md 5): umbrella vector of the displacement, gathered by spring_force. Not run in the kaehler tissue.
+// bend (docs/physics.md): umbrella vector of the displacement, gathered by spring_force. Not run in the kaehler tissue.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "stage.glsl"

@@ -1,4 +1,4 @@
-// spring_force (KA-11, KA-12, KA-14, KA-15, KA-16; spec/prototype.md 5): all forces on a node but damping.
+// spring_force (KA-11, KA-12, KA-14, KA-15, KA-16; docs/physics.md): all forces on a node but damping.
 // Operation order: docs/physics.md. Gather in CSR order, no atomics, everything precise.
 #version 460
 #extension GL_GOOGLE_include_directive : require

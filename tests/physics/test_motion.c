@@ -1,4 +1,4 @@
-/* Motion: KA-17 leapfrog (not KA-18 Euler), stability and time constants (spec 2.9), and what any
+/* Motion: KA-17 leapfrog (not KA-18 Euler), stability and time constants (docs/physics.md), and what any
  * mechanics must keep: rest, period, momentum, energy, mirror symmetry, static nodes (KA-09). */
 #include <setjmp.h>
 #include <stdarg.h>

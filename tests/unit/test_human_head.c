@@ -1,5 +1,5 @@
 /* The committed reference head: counts, exact mirror symmetry, Frankfort pose, regions, depth, jaw weight, and every
- * part in its place (KA-01, KA-03, KA-06, KA-09; design.md 3). */
+ * part in its place (KA-01, KA-03, KA-06, KA-09). */
 #include "risorius/head.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 /* Tissue depth interpolated from the published sites, and the smooth mandible weight
- * (KA-05, KA-09; spec/prototype.md 5; assets/tables/tissue_depth.csv). */
+ * (KA-05, KA-09; assets/tables/tissue_depth.csv). */
 #include "make_head.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-/* risorius-make-head: writes assets/human from the CC0 base mesh and the recipe (design.md 3). */
+/* risorius-make-head: writes assets/human from the CC0 base mesh and the recipe. */
 #include "make_head.h"
 
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* risorius-make-head: base mesh + recipe -> the files of assets/human (design.md 3; KA-01, KA-03, KA-06).
+/* risorius-make-head: base mesh + recipe -> the files of assets/human (KA-01, KA-03, KA-06).
  * Everything is computed in base millimetres (base mesh units x 100) and turned into head coordinates when written. */
 #pragma once
 

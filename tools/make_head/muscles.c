@@ -1,5 +1,5 @@
-/* First layout of muscles.json: grids on the skin from the recipe's origins, insertions and widths (KA-38, KA-44;
- * spec/prototype.md 5). Afterwards the file is calibrated by hand, so it is written only when asked for. */
+/* First layout of muscles.json: grids on the skin from the recipe's origins, insertions and widths (KA-38,
+ * KA-44). Afterwards the file is calibrated by hand, so it is written only when asked for. */
 #include "make_head.h"
 
 #include <stdlib.h>

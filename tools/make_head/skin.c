@@ -1,4 +1,4 @@
-/* Cutting head and neck out of the body, and the Frankfort frame (KA-01; spec/kaehler 2.1 "FH alignment"). */
+/* Cutting head and neck out of the body, and the Frankfort frame (KA-01). */
 #include "make_head.h"
 
 #include <math.h>

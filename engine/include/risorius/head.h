@@ -49,10 +49,10 @@ typedef struct ris_muscle_def {
     bool closes_on_line; /* sphincter: contracts towards the axis as a slit (eyelids), not towards a point */
     float thickness_mm[2]; /* min, max */
     float max_shortening;  /* contraction at activation 1, 0..0.30; may be 0 for a passive carrier */
-    float radius_mm;       /* influence beyond the muscle depth (R of spec/prototype.md 5) */
+    float radius_mm;       /* influence beyond the muscle depth (R of docs/physics.md) */
     float insertion_start; /* t0 of the insertion profile along the fibre, 0..1 */
     float lip_drag_power; /* > 0: the end pulls the lip corner, drag along the oris is t^power; 0 = no pull */
-    float gain;           /* factor on the weight, 1.2 in spec/prototype.md 5 */
+    float gain;           /* factor on the weight (docs/physics.md) */
     bool attach_auto;
     uint32_t attach_count;
     uint32_t *attach; /* skin vertices when attach_auto is false (attach_count) */
@@ -95,7 +95,7 @@ typedef struct ris_anchor_region {
     float normal, tangential;   /* g/s^2 per 25 mm^2 of node area */
 } ris_anchor_region;
 
-/* Numbers of the skin model (KA-10..18; spec/prototype.md 5). ris_default_tissue() fills all. */
+/* Numbers of the skin model (KA-10..18; docs/physics.md). ris_default_tissue() fills all. */
 typedef struct ris_tissue_def {
     ris_tissue_model model;
     float density_kg_m3, skin_mm;     /* KA-13, kaehler mass */
@@ -148,7 +148,7 @@ typedef struct ris_head {
     ris_expression *expression;
 } ris_head;
 
-/* Default tissue: spec/prototype.md section 5, with thesis numbers for the kaehler fields. */
+/* Default tissue: docs/physics.md, with thesis numbers for the kaehler fields. */
 ris_tissue_def ris_default_tissue(void);
 
 /* Reads directory/head.json and all it names. On failure *out is zeroed and err says file:line:col where it can. */

@@ -1,5 +1,4 @@
-/* bend: umbrella vector L(x - x0) of the default tissue's bending energy (spec/prototype.md 5). Order:
- * docs/physics.md. */
+/* bend: umbrella vector L(x - x0) of the default tissue's bending energy. Order: docs/physics.md. */
 #include "sim/cpu/cpu_stage.h"
 
 #include "model/vec3.h"

@@ -1,5 +1,5 @@
 /* The CPU reference behind ris_sim: every device stage in the same order on plain arrays. Written from
- * spec/kaehler.md 2 and docs/physics.md, apart from the shaders, so that parity means something. */
+ * the thesis and docs/physics.md, apart from the shaders, so that parity means something. */
 #include "sim/cpu/cpu_stage.h"
 #include "sim/sim_impl.h"
 
