@@ -21,7 +21,14 @@ typedef struct run {
     float *pose;                                                 /* (channel_count) */
     double step_sum[RIS_STAGE_COUNT], clip_sum[RIS_STAGE_COUNT]; /* squares, mm^2 */
     uint64_t step_nodes[RIS_STAGE_COUNT], clip_nodes[RIS_STAGE_COUNT];
+    bool over; /* report->first_* is over tolerance */
 } run;
+
+/* Where in the clip a stage ran. */
+typedef struct place {
+    uint32_t tick, substep;
+    bool probe; /* the single step from equal states */
+} place;
 
 ris_compare_def ris_default_compare_def(ris_sim *a, ris_sim *b)
 {
@@ -144,14 +151,41 @@ static void measure(const run *r, ris_stage stage, ris_compare_stage *stats, dou
     stats->rms_mm = sqrt(*sum / (double)*nodes);
 }
 
-/* Reads and compares all that stage wrote. place is NULL in a probe, else tick and substep for the first
- * difference. */
-static ris_result compare_stage(run *r, ris_stage stage, const uint32_t place[2], ris_error *err)
+/* true if a vertex is more than tolerance_mm off (a NaN is); *out_first is then the lowest. */
+static bool find_over(const run *r, ris_stage stage, float tolerance_mm, uint32_t *out_first)
+{
+    for (uint32_t i = 0; i < r->model->node_count; i++) {
+        if (!(distance(r->value[0][i], r->value[1][i]) * scale_mm(r, stage, i) <= (double)tolerance_mm)) {
+            *out_first = i;
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Keeps the first place over tolerance; until there is one, the first difference. */
+static void note_difference(run *r, ris_stage stage, const place *at, bool in_mm, uint32_t vertex)
 {
     ris_compare_report *report = r->report;
-    ris_compare_stage *stats = place ? &report->clip[stage] : &report->step[stage];
-    double *sum = place ? &r->clip_sum[stage] : &r->step_sum[stage];
-    uint64_t *nodes = place ? &r->clip_nodes[stage] : &r->step_nodes[stage];
+    const float tolerance_mm = at->probe ? r->def->step_tolerance_mm : r->def->clip_tolerance_mm;
+    const bool over = tolerance_mm > 0.0f ? in_mm && find_over(r, stage, tolerance_mm, &vertex) : true;
+    if (report->differs && (r->over || !over)) {
+        return;
+    }
+    report->differs = true;
+    r->over = over;
+    report->first_stage = stage;
+    report->first_tick = at->tick;
+    report->first_substep = at->substep;
+    report->first_vertex = vertex;
+}
+
+/* Reads and compares all that stage wrote. */
+static ris_result compare_stage(run *r, ris_stage stage, const place *at, ris_error *err)
+{
+    ris_compare_stage *stats = at->probe ? &r->report->step[stage] : &r->report->clip[stage];
+    double *sum = at->probe ? &r->step_sum[stage] : &r->clip_sum[stage];
+    uint64_t *nodes = at->probe ? &r->step_nodes[stage] : &r->clip_nodes[stage];
     ris_state state[3];
     const uint32_t count = outputs(stage, state);
     for (uint32_t k = 0; k < count; k++) {
@@ -163,12 +197,8 @@ static ris_result compare_stage(run *r, ris_stage stage, const uint32_t place[2]
         }
         words = differing(r, &vertex);
         stats->differing_words += words;
-        if (words && place && !report->differs) {
-            report->differs = true;
-            report->first_stage = stage;
-            report->first_tick = place[0];
-            report->first_substep = place[1];
-            report->first_vertex = vertex;
+        if (words) {
+            note_difference(r, stage, at, k == 0, vertex);
         }
         if (k == 0) {
             measure(r, stage, stats, sum, nodes);
@@ -178,38 +208,37 @@ static ris_result compare_stage(run *r, ris_stage stage, const uint32_t place[2]
 }
 
 /* Runs one stage on both sides and compares. */
-static ris_result both_stage(run *r, ris_stage stage, const ris_anchor_frame *anchors,
-                             const uint32_t place[2], ris_error *err)
+static ris_result both_stage(run *r, ris_stage stage, const ris_anchor_frame *anchors, const place *at,
+                             ris_error *err)
 {
     ris_result result = ris__sim_stage(r->def->a, stage, anchors ? &anchors[0] : NULL, err);
     if (result == RIS_OK) {
         result = ris__sim_stage(r->def->b, stage, anchors ? &anchors[1] : NULL, err);
     }
-    return result == RIS_OK ? compare_stage(r, stage, place, err) : result;
+    return result == RIS_OK ? compare_stage(r, stage, at, err) : result;
 }
 
 /* A tick (or a probe's single step) stage by stage. */
 static ris_result lockstep(run *r, const ris_anchor_frame *anchors, uint32_t tick, uint32_t substeps,
-                           bool probe, ris_error *err)
+                           bool is_probe, ris_error *err)
 {
     const bool bend = !(r->model->push.flags & RIS_TISSUE_FLAG_KAEHLER);
-    uint32_t place[2] = {tick, 0};
-    const uint32_t *where = probe ? NULL : place;
-    ris_result result = both_stage(r, RIS_STAGE_ANCHOR_SHIFT, anchors, where, err);
+    place at = {.tick = tick, .probe = is_probe};
+    ris_result result = both_stage(r, RIS_STAGE_ANCHOR_SHIFT, anchors, &at, err);
     for (uint32_t k = 0; k < substeps && result == RIS_OK; k++) {
-        place[1] = k;
+        at.substep = k;
         if (bend) {
-            result = both_stage(r, RIS_STAGE_BEND, NULL, where, err);
+            result = both_stage(r, RIS_STAGE_BEND, NULL, &at, err);
         }
         if (result == RIS_OK) {
-            result = both_stage(r, RIS_STAGE_SPRING_FORCE, NULL, where, err);
+            result = both_stage(r, RIS_STAGE_SPRING_FORCE, NULL, &at, err);
         }
         if (result == RIS_OK) {
-            result = both_stage(r, RIS_STAGE_VERLET, NULL, where, err);
+            result = both_stage(r, RIS_STAGE_VERLET, NULL, &at, err);
         }
     }
-    place[1] = 0;
-    return result == RIS_OK ? both_stage(r, RIS_STAGE_NORMAL, NULL, where, err) : result;
+    at.substep = 0;
+    return result == RIS_OK ? both_stage(r, RIS_STAGE_NORMAL, NULL, &at, err) : result;
 }
 
 /* One step of every stage from a's state on both sides; then both states are put back. */
@@ -347,7 +376,7 @@ static ris_result judge(const run *r, ris_error *err)
         if (step || clip) {
             return ris_fail(err, RIS_ERROR_FAILED,
                             "%s and %s differ in %s by up to %g mm (%llu words) %s, allowed %g mm; "
-                            "the first difference is in %s, tick %u, substep %u, vertex %u",
+                            "the first place is %s, tick %u, substep %u, vertex %u",
                             report->backend[0], report->backend[1], ris_stage_name((ris_stage)s),
                             stats->max_mm, (unsigned long long)stats->differing_words,
                             clip ? "over the clip" : "after one step",

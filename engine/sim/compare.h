@@ -35,7 +35,7 @@ typedef struct ris_compare_report {
     ris_compare_stage step[RIS_STAGE_COUNT];        /* after one step from equal states, at every 30th tick */
     ris_compare_stage
         clip[RIS_STAGE_COUNT]; /* over all steps of the clip, each side going on from its own state */
-    bool differs;              /* some bit differs; then where the first one does: */
+    bool differs; /* some bit differs; then the first place over tolerance, or if none is, the first: */
     ris_stage first_stage;
     uint32_t first_tick;    /* 1 .. tick_count */
     uint32_t first_substep; /* 0 .. substeps - 1; 0 for anchor_shift and normal */

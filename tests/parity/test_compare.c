@@ -15,6 +15,7 @@
 
 #define NODES 1234u
 #define TICKS 12u
+#define SUBSTEPS 8u
 
 static ris_device *vk;
 static ris_model *model;
@@ -35,7 +36,8 @@ typedef struct spoiler {
     uint32_t at;     /* which run of it, from 0 */
     uint32_t run;    /* so many were made */
     uint32_t vertex;
-    bool skip; /* leave the stage out, else flip one bit of its output */
+    bool skip;   /* leave the stage out, else flip one bit of its output */
+    bool always; /* flip in every run; leave out in run `at` of every pass, if skip */
 } spoiler;
 
 static void spoil_destroy(void *self)
@@ -52,10 +54,16 @@ static ris_result spoil_stage(void *self, ris_stage stage, const ris_anchor_fram
     ris_result result;
     ris_vec4 *value;
     uint32_t word;
-    if (stage != s->stage || s->run++ != s->at) {
+    bool now;
+    if (stage != s->stage) {
         return ris__sim_stage(s->inner, stage, anchors, err);
     }
-    if (s->skip) {
+    now = s->always ? s->run % (TICKS * SUBSTEPS) == s->at : s->run == s->at;
+    s->run++;
+    if (!now && !s->always) {
+        return ris__sim_stage(s->inner, stage, anchors, err);
+    }
+    if (now && s->skip) {
         return RIS_OK;
     }
     result = ris__sim_stage(s->inner, stage, anchors, err);
@@ -176,6 +184,58 @@ static void one_flipped_bit_is_named(void **state)
     }
 }
 
+static ris_result compare_spoiled(bool skip, float tolerance_mm, ris_compare_report *report, ris_error *err)
+{
+    float size = 1.0f;
+    ris_sim *a = cpu_sim(), *b = NULL;
+    ris_compare_def def;
+    ris_result result;
+    spoiler *s = calloc(1, sizeof *s);
+    assert_non_null(s);
+    *s = (spoiler){
+        .stage = RIS_STAGE_VERLET, .at = 5 * SUBSTEPS + 3, .vertex = 777, .skip = skip, .always = true};
+    assert_int_equal(ris_sim_create_cpu(model, &s->inner, NULL), RIS_OK);
+    assert_int_equal(ris__sim_create(model, &spoil_impl, s, "spoiled", &b, NULL), RIS_OK);
+    def = ris_default_compare_def(a, b);
+    def.step_tolerance_mm = def.clip_tolerance_mm = tolerance_mm;
+    def.tick_count = TICKS;
+    def.pose = pose;
+    def.user = &size;
+    result = ris_compare_run(&def, report, err);
+    ris_sim_destroy(a);
+    ris_sim_destroy(b);
+    return result;
+}
+
+/* Both passes of the comparison are wrong in the same way, so only the verdict can tell. */
+static void the_verdict_follows_the_tolerance(void **state)
+{
+    ris_error err = {0};
+    ris_compare_report report;
+    (void)state;
+    assert_int_equal(compare_spoiled(false, 0.0f, &report, &err), RIS_ERROR_FAILED);
+    assert_non_null(strstr(err.text, "allowed 0 mm"));
+    assert_non_null(strstr(err.text, "verlet, tick 1, substep 0, vertex 777"));
+    if (compare_spoiled(false, 1e-2f, &report, &err) != RIS_OK) {
+        fail_msg("%s", err.text);
+    }
+    assert_true(report.differs);
+    assert_int_equal(report.first_tick, 1);
+}
+
+/* Bits differ from the first substep on, but what is named is the place that is over tolerance. */
+static void the_place_over_tolerance_is_named(void **state)
+{
+    ris_error err = {0};
+    ris_compare_report report;
+    (void)state;
+    assert_int_equal(compare_spoiled(true, 1e-3f, &report, &err), RIS_ERROR_FAILED);
+    assert_non_null(strstr(err.text, "verlet, tick 6, substep 3, "));
+    assert_int_equal(report.first_stage, RIS_STAGE_VERLET);
+    assert_int_equal(report.first_tick, 6);
+    assert_int_equal(report.first_substep, 3);
+}
+
 /* Also with the tolerance of real devices. Left out in tick 10 of the first pass only: whole ticks and
  * stages disagree. */
 static void a_skipped_stage_fails(void **state)
@@ -233,6 +293,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(cpu_and_device_agree),
         cmocka_unit_test(one_flipped_bit_is_named),
+        cmocka_unit_test(the_verdict_follows_the_tolerance),
+        cmocka_unit_test(the_place_over_tolerance_is_named),
         cmocka_unit_test(a_skipped_stage_fails),
         cmocka_unit_test(a_device_is_not_compared_with_itself),
         cmocka_unit_test(a_clip_that_moves_too_little_is_refused),
