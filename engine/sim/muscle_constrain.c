@@ -11,6 +11,7 @@
 #include <string.h>
 
 #define ACTIVITY_FULL 0.1f
+#define LARGEST_POWER 64.0f /* of lip_drag_power in muscles.json */
 
 ris_vec3 ris__resolve_group(uint32_t n, const float *contraction, const float *rest_distance_mm,
                             const ris_vec3 *rest, float lambda, ris_vec3 *point)
@@ -37,7 +38,7 @@ ris_vec3 ris__resolve_group(uint32_t n, const float *contraction, const float *r
 
 float ris__power(float t, float power)
 {
-    power = f_clamp(power, 0.0f, 31.0f);
+    power = f_clamp(power, 0.0f, LARGEST_POWER);
     const uint32_t whole = (uint32_t)power;
     float result = 1.0f;
     for (uint32_t k = 0; k < whole; ++k) {

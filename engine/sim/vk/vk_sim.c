@@ -373,10 +373,10 @@ ris_result ris__vk_sim_spoil_guard(ris_sim *front, uint32_t binding, uint32_t wo
 ris_result ris__vk_sim_swap_bindings(ris_sim *front, uint32_t a, uint32_t b, ris_error *err)
 {
     vk_sim *sim = ris__sim_self(front, &vk_impl);
-    const vk_range first = sim->mem.range[a], second = sim->mem.range[b];
     if (a >= RIS_BIND_COUNT || b >= RIS_BIND_COUNT) {
         return ris_fail(err, RIS_ERROR_FAILED, "bindings %u and %u, expected below %d", a, b, RIS_BIND_COUNT);
     }
+    const vk_range first = sim->mem.range[a], second = sim->mem.range[b];
     ris_vk_sets_write_buffer(sim->vk, &sim->mem.sets, 0, a, second.buffer->handle, second.offset,
                              second.size + RIS__VK_GUARD);
     ris_vk_sets_write_buffer(sim->vk, &sim->mem.sets, 0, b, first.buffer->handle, first.offset,
