@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <locale.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -156,11 +157,19 @@ ris_result ris__output_write(ris_output_file *file, const void *data, size_t siz
 ris_result ris__output_printf(ris_output_file *file, ris_error *err, const char *format, ...)
 {
     va_list args;
+    locale_t c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+    if (c_locale == (locale_t)0) {
+        return ris_fail(err, RIS_ERROR_MEMORY, "%s: no memory for the C locale", file->path);
+    }
+    locale_t before = uselocale(c_locale);
     va_start(args, format);
     errno = 0;
     int wrote = vfprintf(file->stream, format, args);
+    int reason = errno;
     va_end(args);
-    return wrote < 0 ? write_failed(file->path, errno ? errno : EIO, err) : RIS_OK;
+    uselocale(before);
+    freelocale(c_locale);
+    return wrote < 0 ? write_failed(file->path, reason ? reason : EIO, err) : RIS_OK;
 }
 
 ris_result ris__output_commit(ris_output_file *file, ris_error *err)

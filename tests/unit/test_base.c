@@ -1,4 +1,5 @@
 /* engine/base: files, output by rename, numbers, names, hash, clock. */
+#include "comma_locale.h"
 #include "scratch.h"
 
 #include "base/clock.h"
@@ -240,13 +241,11 @@ static void test_numbers_equal_strtod(void **state)
 static void test_numbers_ignore_the_locale(void **state)
 {
     (void)state;
-    const char *set =
-        setlocale(LC_ALL, "de_DE.UTF-8"); /* where it is not installed, the C locale is tested once more */
+    comma_locale_begin();
     assert_true(number("1.5") == 1.5);
     assert_true(number("1.234567890123456789") == 1.234567890123456789);
     assert_true(isnan(number("1,5")));
-    setlocale(LC_ALL, "C");
-    (void)set;
+    comma_locale_end();
 }
 
 static void test_integers(void **state)

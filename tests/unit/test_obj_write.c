@@ -1,4 +1,5 @@
 /* engine/output/obj_write.c: order, quads and UVs survive writing and reading; two objects count on. */
+#include "comma_locale.h"
 #include "scratch.h"
 
 #include "base/file.h"
@@ -68,6 +69,28 @@ static void test_text(void **state)
     scratch_clear();
 }
 
+/* A program that uses the library may run in any locale. */
+static void test_comma_locale(void **state)
+{
+    (void)state;
+    ris_error err = {0};
+    ris_mesh mesh = parse();
+    const ris_vec4 at[5] = {{0.5f, -2.25f, 3.0f, 0.0f}};
+    const ris_obj_object object = {"skin", &mesh, at};
+    const char *path = scratch_path("c.obj");
+    char *text;
+    size_t size;
+    comma_locale_begin();
+    ris_result result = ris_obj_write(path, &object, 1, &err);
+    comma_locale_end();
+    assert_int_equal(result, RIS_OK);
+    assert_int_equal(ris__file_read(path, 10000, &text, &size, &err), RIS_OK);
+    assert_non_null(strstr(text, "\nv 0.500000 -2.250000 3.000000\n"));
+    free(text);
+    ris_mesh_finish(&mesh);
+    scratch_clear();
+}
+
 static void test_unwritable(void **state)
 {
     (void)state;
@@ -87,6 +110,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_round_trip),
         cmocka_unit_test(test_text),
+        cmocka_unit_test(test_comma_locale),
         cmocka_unit_test(test_unwritable),
     };
     return cmocka_run_group_tests(tests, scratch_setup, scratch_teardown);
