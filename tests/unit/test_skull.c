@@ -139,6 +139,54 @@ static void test_shrunken_skin_is_refused(void **state)
     free(normal);
 }
 
+/* Edges of the mandible that pierce the skull after a turn about the jaw axis and a shift. */
+static uint32_t crossings_after(double degrees, dvec shift)
+{
+    tri_mesh turned;
+    bvh t;
+    ris_error err = {0};
+    double c = cos(degrees * 0.017453292519943295), s = sin(degrees * 0.017453292519943295);
+    assert_int_equal(tri_load_obj(HUMAN "/mandible.obj", &turned, &err), RIS_OK);
+    for (uint32_t i = 0; i < turned.vertex_count; i++) {
+        dvec p = dv_sub(turned.position[i], jaw_point);
+        turned.position[i] = dv_add(dv_add(jaw_point, shift), dv(p.x, p.y * c - p.z * s, p.y * s + p.z * c));
+    }
+    assert_int_equal(bvh_build(&t, &turned, &err), RIS_OK);
+    tri_mesh both[2] = {bone[0], turned};
+    bvh trees[2] = {tree[0], t};
+    uint32_t crossing = measure(both, trees, &marks, jaw_point).crossing;
+    bvh_finish(&t);
+    tri_finish(&turned);
+    return crossing;
+}
+
+/* The hinge of head.json (axis along x) opens the jaw to its limit without bone in bone; a jaw pushed back is noticed. */
+static void test_jaw_opens_freely(void **state)
+{
+    (void)state;
+    for (int degrees = 5; degrees <= 20; degrees += 5)
+        assert_int_equal(crossings_after(degrees, dv(0, 0, 0)), 0);
+    assert_true(crossings_after(0, dv(0, 0, -6)) > 0);
+}
+
+/* No vertex of an eyeball in bone; an eye moved up by half its size is in the roof of the orbit. */
+static void test_eyes_fit(void **state)
+{
+    (void)state;
+    ris_error err = {0};
+    tri_mesh eye;
+    assert_int_equal(tri_load_obj(HUMAN "/eye.L.obj", &eye, &err), RIS_OK);
+    double nearest = HUGE_VAL, moved = HUGE_VAL;
+    for (uint32_t i = 0; i < eye.vertex_count; i++) {
+        nearest = fmin(nearest, -bvh_depth(&tree[0], eye.position[i]));
+        moved = fmin(moved, -bvh_depth(&tree[0], dv_add(eye.position[i], dv(0, 15, 0))));
+    }
+    tri_finish(&eye);
+    print_message("eyeball to orbit %.2f mm\n", nearest);
+    assert_true(nearest > 0);
+    assert_true(moved < 0);
+}
+
 static const landmark *find(const landmark *list, uint32_t count, const char *name)
 {
     for (uint32_t i = 0; i < count; i++)
@@ -281,6 +329,8 @@ int main(void)
         cmocka_unit_test(test_bounds_hold),
         cmocka_unit_test(test_controls_are_noticed),
         cmocka_unit_test(test_shrunken_skin_is_refused),
+        cmocka_unit_test(test_jaw_opens_freely),
+        cmocka_unit_test(test_eyes_fit),
         cmocka_unit_test(test_landmarks),
         cmocka_unit_test(test_pairs),
     };

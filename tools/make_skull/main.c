@@ -31,7 +31,7 @@ typedef struct job {
 } job;
 
 static const char *const names[2] = {"skull", "mandible"};
-static const uint32_t half_triangles[2] = {11500, 4800};
+static const uint32_t half_triangles[2] = {12400, 5200};
 
 static ris_result parse_arguments(job *j, int argc, char **argv, ris_error *err)
 {
