@@ -145,7 +145,29 @@ done:
     return result;
 }
 
-/* Moves a binding from a triangle of the coarse skin to the drawn surface of the same face, keeping the height above it. */
+/* Binding of a vertex at rest to a triangle of the drawn surface, `away` from the point with those shares. */
+static bool bind_to_surface(const piece *skin, const uint32_t node[3], const float share[3], ris_vec3 away,
+                            ris_vec3 normal, ris_draw_ride *out)
+{
+    ris_vec3 a = skin->position[node[0]], b = skin->position[node[1]], c = skin->position[node[2]], frame[3];
+    if (!ris__ride_frame(a, b, c, frame)) {
+        return false;
+    }
+    ris_vec3 offset = ris__ride_offset(plus(mix3(a, b, c, share), away, 1.0f), a, b, c, share), n = normal;
+    *out = (ris_draw_ride){.a = node[0],
+                           .b = node[1],
+                           .c = node[2],
+                           .share = {share[0], share[1], share[2], 0.0f},
+                           .offset = {offset.x, offset.y, offset.z, 0.0f}};
+    out->normal = (ris_vec4){n.x * frame[0].x + n.y * frame[0].y + n.z * frame[0].z,
+                             n.x * frame[1].x + n.y * frame[1].y + n.z * frame[1].z,
+                             n.x * frame[2].x + n.y * frame[2].y + n.z * frame[2].z, 0.0f};
+    return true;
+}
+
+/* Moves a binding from a triangle of the coarse skin to the drawn surface of the same face, keeping the height above it.
+ * A strand that stands off keeps the coarse triangle (its corners come first in the drawn surface): the small triangles
+ * of a sharp edge turn by very different angles. */
 static ris_draw_ride ride_on_surface(const piece *skin, const ris_model *model, const piece *part,
                                      uint32_t vertex, uint32_t face, uint32_t first_quad)
 {
@@ -153,29 +175,21 @@ static ris_draw_ride ride_on_surface(const piece *skin, const ris_model *model, 
     const ris_vec3 *coarse = skin->mesh->position;
     const ris_ride *bound = &part->ride[vertex];
     ris_vec3 foot = mix3(coarse[node[0]], coarse[node[1]], coarse[node[2]], bound->share);
-    ris_vec3 away = plus(part->mesh->position[vertex], foot, -1.0f);
+    ris_vec3 away = plus(part->mesh->position[vertex], foot, -1.0f), normal = part->normal[vertex];
     ris_draw_ride best = {0};
     float nearest = FLT_MAX;
+    if (bound->standing && bind_to_surface(skin, node, bound->share, away, normal, &best)) {
+        return best;
+    }
     for (uint32_t q = first_quad; q < skin->refined.quad_count && skin->refined.quad_face[q] == face; q++) {
         const uint32_t *quad = skin->refined.quad + 4 * (size_t)q;
         for (uint32_t half = 0; half < (quad[2] == quad[3] ? 1u : 2u); half++) {
-            uint32_t a = quad[0], b = quad[1 + half], c = quad[2 + half];
-            ris_vec3 pa = skin->position[a], pb = skin->position[b], pc = skin->position[c], frame[3];
-            float share[3], distance = ris__ride_nearest(foot, pa, pb, pc, share);
-            if (distance >= nearest || !ris__ride_frame(pa, pb, pc, frame)) {
-                continue;
+            const uint32_t corner[3] = {quad[0], quad[1 + half], quad[2 + half]};
+            float share[3], distance = ris__ride_nearest(foot, skin->position[corner[0]], skin->position[corner[1]],
+                                                         skin->position[corner[2]], share);
+            if (distance < nearest && bind_to_surface(skin, corner, share, away, normal, &best)) {
+                nearest = distance;
             }
-            nearest = distance;
-            ris_vec3 p = plus(mix3(pa, pb, pc, share), away, 1.0f), n = part->normal[vertex];
-            ris_vec3 offset = ris__ride_offset(p, pa, pb, pc, share);
-            best = (ris_draw_ride){.a = a,
-                                   .b = b,
-                                   .c = c,
-                                   .share = {share[0], share[1], share[2], 0.0f},
-                                   .offset = {offset.x, offset.y, offset.z, 0.0f}};
-            best.normal = (ris_vec4){n.x * frame[0].x + n.y * frame[0].y + n.z * frame[0].z,
-                                     n.x * frame[1].x + n.y * frame[1].y + n.z * frame[1].z,
-                                     n.x * frame[2].x + n.y * frame[2].y + n.z * frame[2].z, 0.0f};
         }
     }
     return best;

@@ -65,7 +65,8 @@ ris_result ris_model_create(const ris_head *head, ris_model **out, ris_error *er
 {
     static ris_result (*const builders[])(ris_bake *, ris_error *) = {
         ris__bake_triangles, ris__bake_mass,     ris__bake_springs, ris__bake_grids, ris__bake_muscles,
-        ris__bake_groups,    ris__bake_bindings, ris__bake_anchors, ris__bake_push,  ris__bake_channels,
+        ris__bake_groups,    ris__bake_bindings, ris__bake_anchors, ris__bake_lids, ris__bake_push,
+        ris__bake_channels,
     };
     *out = NULL;
     ris_result result = check_head(head, err);
@@ -143,6 +144,7 @@ void ris_model_destroy(ris_model *model)
     free(model->group);
     free(model->group_point);
     free(model->bone_anchor);
+    free(model->lid);
     if (model->owned_head) {
         ris_head_finish(model->owned_head);
         free(model->owned_head);

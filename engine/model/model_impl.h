@@ -38,6 +38,8 @@ ris_result ris__bake_groups(ris_bake *bake, ris_error *err);
 ris_result ris__bake_bindings(ris_bake *bake, ris_error *err);
 /* KA-14, KA-15 and the anchors of the default tissue: bone_anchor, anchor_param. */
 ris_result ris__bake_anchors(ris_bake *bake, ris_error *err);
+/* Nodes of the eyelids with their weights and closing angles; thinner, firmly held skin there. */
+ris_result ris__bake_lids(ris_bake *bake, ris_error *err);
 /* Constants of the stages and the stable time step (spec 2.9). */
 ris_result ris__bake_push(ris_bake *bake, ris_error *err);
 /* KA-48: the channel table. */
@@ -50,6 +52,9 @@ void ris__region_flags(const ris_head *head, const char *name, bool *flags);
  * scaled by bulge (KA-37). p0, p1 are the ends the segment's frame was built from. */
 ris_vec3 ris__segment_point(const ris_segment *segment, ris_vec3 p0, ris_vec3 p1, ris_vec3 a, ris_vec3 b,
                             float bulge, ris_vec3 local);
+
+/* Distance from the centre to the surface of an eye in a unit direction, looking along unit gaze, mm. */
+float ris__eye_surface(const ris_lid_eye *eye, ris_vec3 direction, ris_vec3 gaze);
 
 /* Mean over the fibres of control point `point` (KA-27). */
 ris_vec3 ris__muscle_point(const ris_model *model, const ris_muscle *muscle, const ris_vec3 *points,

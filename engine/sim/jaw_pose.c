@@ -9,24 +9,8 @@
 
 #define PI 3.14159265358979323846
 
-enum {
-    JAW_OPEN,
-    JAW_FORWARD,
-    JAW_SIDE,
-    EYE_YAW_L,
-    EYE_YAW_R,
-    EYE_PITCH_L,
-    EYE_PITCH_R,
-    HEAD_YAW,
-    HEAD_PITCH,
-    HEAD_ROLL,
-    HEAD_X,
-    HEAD_Y,
-    HEAD_Z
-}; /* the order of asset/channel.c; tests/unit/test_model.c checks it */
-
 /* Taylor series after halving the angle until it is small; only + and x, so no libm in what feeds a hash. */
-static void cos_sin(double angle, double *out_cos, double *out_sin)
+void ris__cos_sin(double angle, double *out_cos, double *out_sin)
 {
     const double x = angle / 16.0, s = x * x;
     double sine =
@@ -44,7 +28,7 @@ static void cos_sin(double angle, double *out_cos, double *out_sin)
 ris_rigid ris__rigid_turn(ris_vec3 point, ris_vec3 axis, double angle_rad)
 {
     double c, s;
-    cos_sin(angle_rad, &c, &s);
+    ris__cos_sin(angle_rad, &c, &s);
     const double x = (double)axis.x, y = (double)axis.y, z = (double)axis.z, v = 1.0 - c;
     const double r[9] = {
         c + x * x * v,     x * y * v - z * s, x * z * v + y * s, y * x * v + z * s, c + y * y * v,
@@ -109,12 +93,12 @@ static ris_rigid yaw_pitch_roll(ris_vec3 point, float yaw, float pitch, float ro
 static void pose_jaw(ris_rig *rig, const float *beside)
 {
     const ris_jaw_def *def = &rig->model->head->jaw;
-    const float forward = beside[JAW_FORWARD];
+    const float forward = beside[RIS__JAW_FORWARD];
     rig->jaw =
-        ris__rigid_turn(def->point, def->axis, (double)beside[JAW_OPEN] * (double)def->open_deg * PI / 180.0);
-    rig->jaw.shift = v3(def->side_mm * beside[JAW_SIDE], 0.0f,
+        ris__rigid_turn(def->point, def->axis, (double)beside[RIS__JAW_OPEN] * (double)def->open_deg * PI / 180.0);
+    rig->jaw.shift = v3(def->side_mm * beside[RIS__JAW_SIDE], 0.0f,
                         forward * (forward < 0.0f ? def->back_mm : def->forward_mm));
-    rig->jaw.identity = beside[JAW_OPEN] == 0.0f && beside[JAW_SIDE] == 0.0f && forward == 0.0f;
+    rig->jaw.identity = beside[RIS__JAW_OPEN] == 0.0f && beside[RIS__JAW_SIDE] == 0.0f && forward == 0.0f;
 }
 
 void ris__jaw_pose(ris_rig *rig, const float *pose)
@@ -123,13 +107,13 @@ void ris__jaw_pose(ris_rig *rig, const float *pose)
     const float *beside = pose + rig->first_beside;
     pose_jaw(rig, beside);
     rig->eye[0] =
-        yaw_pitch_roll(part_pivot(model->head, RIS_BONE_EYE_L), beside[EYE_YAW_L], beside[EYE_PITCH_L], 0.0f);
+        yaw_pitch_roll(part_pivot(model->head, RIS_BONE_EYE_L), beside[RIS__EYE_YAW_L], beside[RIS__EYE_PITCH_L], 0.0f);
     rig->eye[1] =
-        yaw_pitch_roll(part_pivot(model->head, RIS_BONE_EYE_R), beside[EYE_YAW_R], beside[EYE_PITCH_R], 0.0f);
-    rig->head = yaw_pitch_roll(v3(0, 0, 0), beside[HEAD_YAW], beside[HEAD_PITCH], beside[HEAD_ROLL]);
-    rig->head.shift = v3(beside[HEAD_X], beside[HEAD_Y], beside[HEAD_Z]);
+        yaw_pitch_roll(part_pivot(model->head, RIS_BONE_EYE_R), beside[RIS__EYE_YAW_R], beside[RIS__EYE_PITCH_R], 0.0f);
+    rig->head = yaw_pitch_roll(v3(0, 0, 0), beside[RIS__HEAD_YAW], beside[RIS__HEAD_PITCH], beside[RIS__HEAD_ROLL]);
+    rig->head.shift = v3(beside[RIS__HEAD_X], beside[RIS__HEAD_Y], beside[RIS__HEAD_Z]);
     rig->head.identity =
-        rig->head.identity && beside[HEAD_X] == 0.0f && beside[HEAD_Y] == 0.0f && beside[HEAD_Z] == 0.0f;
+        rig->head.identity && beside[RIS__HEAD_X] == 0.0f && beside[RIS__HEAD_Y] == 0.0f && beside[RIS__HEAD_Z] == 0.0f;
 
     /* the default tissue moves muscles in the closed-jaw space and turns their targets with the node's own
      * jaw weight */

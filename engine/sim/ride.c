@@ -6,7 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define FAR_MM 1.5f /* vertices farther from the skin than this look for a nearer vertex of their card */
+#define FAR_MM 1.5f /* a strand or card that reaches farther from the skin than this hangs on its root */
+#define SPREAD_PASSES 64
 
 static ris_vec3 sub(ris_vec3 a, ris_vec3 b)
 {
@@ -199,19 +200,39 @@ static void find_nearest(const ris_model *model, const span *all, float widest, 
     }
 }
 
-/* Lets vertices far from the skin take the triangle of the nearest-to-skin neighbour, until nothing changes. */
-static void spread_roots(const ris_mesh *mesh, uint32_t *triangle, float *distance2)
+/* The largest reach[] of every connected piece of the mesh, at all its vertices. */
+static void spread_largest(const ris_mesh *mesh, float *reach)
 {
     bool changed = true;
-    for (int pass = 0; pass < 64 && changed; pass++) {
+    for (int pass = 0; pass < SPREAD_PASSES && changed; pass++) {
+        changed = false;
+        for (uint32_t f = 0; f < mesh->face_count; f++) {
+            float largest = 0.0f;
+            for (uint32_t c = mesh->face_start[f]; c < mesh->face_start[f + 1]; c++) {
+                largest = fmaxf(largest, reach[mesh->face_vertex[c]]);
+            }
+            for (uint32_t c = mesh->face_start[f]; c < mesh->face_start[f + 1]; c++) {
+                changed = changed || reach[mesh->face_vertex[c]] < largest;
+                reach[mesh->face_vertex[c]] = largest;
+            }
+        }
+    }
+}
+
+/* A piece that stands off the skin (a lash) rides as one on the triangle of its root, the vertex nearest to the
+ * skin; pieces that lie on it (hairs of a brow) follow it vertex by vertex. */
+static void spread_roots(const ris_mesh *mesh, const float *reach, uint32_t *root, float *distance2)
+{
+    bool changed = true;
+    for (int pass = 0; pass < SPREAD_PASSES && changed; pass++) {
         changed = false;
         for (uint32_t f = 0; f < mesh->face_count; f++) {
             uint32_t first = mesh->face_start[f], end = mesh->face_start[f + 1];
             for (uint32_t c = first; c < end; c++) {
                 uint32_t a = mesh->face_vertex[c], b = mesh->face_vertex[c + 1 < end ? c + 1 : first];
                 uint32_t near = distance2[a] < distance2[b] ? a : b, far = near == a ? b : a;
-                if (distance2[far] > FAR_MM * FAR_MM && distance2[near] < distance2[far]) {
-                    triangle[far] = triangle[near];
+                if (reach[far] > FAR_MM * FAR_MM && distance2[near] < distance2[far]) {
+                    root[far] = root[near];
                     distance2[far] = distance2[near];
                     changed = true;
                 }
@@ -220,38 +241,52 @@ static void spread_roots(const ris_mesh *mesh, uint32_t *triangle, float *distan
     }
 }
 
+/* Binding of vertex v at the foot of its root. */
+static ris_ride bind_vertex(const ris_model *model, const ris_mesh *mesh, uint32_t v, uint32_t root,
+                            uint32_t triangle, bool standing)
+{
+    const uint32_t *n = model->triangle + 3 * (size_t)triangle;
+    ris_vec3 a = xyz(model->rest_position[n[0]]), b = xyz(model->rest_position[n[1]]);
+    ris_vec3 c = xyz(model->rest_position[n[2]]);
+    ris_ride ride = {.vertex = {n[0], n[1], n[2]}, .standing = standing};
+    (void)ris__ride_nearest(mesh->position[root], a, b, c, ride.share);
+    ride.offset = ris__ride_offset(mesh->position[v], a, b, c, ride.share);
+    return ride;
+}
+
 ris_result ris__ride_bind(const ris_model *model, const ris_mesh *mesh, ris_ride *out, uint32_t *out_triangle,
                           ris_error *err)
 {
     size_t count = mesh->vertex_count > 0 ? mesh->vertex_count : 1;
-    uint32_t *triangle = malloc(count * sizeof *triangle);
-    float *distance2 = malloc(count * sizeof *distance2), widest;
+    uint32_t *triangle = malloc(count * sizeof *triangle), *root = malloc(count * sizeof *root);
+    float *distance2 = malloc(count * sizeof *distance2), *reach = malloc(count * sizeof *reach), widest;
     span *all = sort_spans(model, &widest);
-    if (triangle == NULL || distance2 == NULL || all == NULL) {
-        free(all);
-        free(triangle);
-        free(distance2);
-        return ris_fail(err, RIS_ERROR_MEMORY, "out of memory for a skin-bound part of %u vertices",
-                        (unsigned)mesh->vertex_count);
+    ris_result result = RIS_OK;
+    if (triangle == NULL || root == NULL || distance2 == NULL || reach == NULL || all == NULL) {
+        result = ris_fail(err, RIS_ERROR_MEMORY, "out of memory for a skin-bound part of %u vertices",
+                          (unsigned)mesh->vertex_count);
+        goto done;
     }
     find_nearest(model, all, widest, mesh, triangle, distance2);
-    free(all);
-    spread_roots(mesh, triangle, distance2);
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
-        const uint32_t *n = model->triangle + 3 * (size_t)triangle[v];
-        ris_vec3 a = xyz(model->rest_position[n[0]]), b = xyz(model->rest_position[n[1]]);
-        ris_vec3 c = xyz(model->rest_position[n[2]]), p = mesh->position[v];
-        ris_ride *ride = &out[v];
-        memcpy(ride->vertex, n, sizeof ride->vertex);
-        (void)ris__ride_nearest(p, a, b, c, ride->share);
-        ride->offset = ris__ride_offset(p, a, b, c, ride->share);
+        root[v] = v;
+        reach[v] = distance2[v];
+    }
+    spread_largest(mesh, reach);
+    spread_roots(mesh, reach, root, distance2);
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        out[v] = bind_vertex(model, mesh, v, root[v], triangle[root[v]], reach[v] > FAR_MM * FAR_MM);
         if (out_triangle != NULL) {
-            out_triangle[v] = triangle[v];
+            out_triangle[v] = triangle[root[v]];
         }
     }
+done:
+    free(all);
     free(triangle);
+    free(root);
     free(distance2);
-    return RIS_OK;
+    free(reach);
+    return result;
 }
 
 ris_result ris_sim_part(const ris_sim *sim, uint32_t part, const ris_vec4 *position, ris_vec4 *out,

@@ -5,12 +5,13 @@
 #include "risorius/sim.h"
 
 /* A vertex on a triangle. Frame of the triangle: x along its first edge, z its normal, y across; the origin is the
- * barycentric point. A card's far vertices share the triangle of the card's vertex nearest to the skin, so that a lash
- * keeps its shape. */
+ * barycentric point. The vertices of a strand or card that stands off the skin share the triangle and the point of the
+ * vertex nearest to the skin, their root, so that a lash keeps its shape. */
 typedef struct ris_ride {
     uint32_t vertex[3];
     float share[3];  /* barycentric, sums to 1 */
     ris_vec3 offset; /* mm in the frame */
+    bool standing;   /* of a strand that stands off the skin */
 } ris_ride;
 
 /* Binds the vertices of mesh to the skin of model at rest: out and out_triangle (mesh->vertex_count); out_triangle is the

@@ -27,6 +27,7 @@ ris_result ris__rig_init(ris_rig *rig, const ris_model *model, ris_error *err)
         {&rig->target, model->node_count, sizeof *rig->target},
         {&rig->point, model->node_count, sizeof *rig->point},
         {&rig->delta, model->node_count, sizeof *rig->delta},
+        {&rig->lid_move, model->lid_count, sizeof *rig->lid_move},
     };
     for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; ++k) {
         ris_result result =
@@ -60,6 +61,7 @@ void ris__rig_finish(ris_rig *rig)
     free(rig->target);
     free(rig->point);
     free(rig->delta);
+    free(rig->lid_move);
     memset(rig, 0, sizeof *rig);
 }
 

@@ -5,6 +5,27 @@
 
 #include "sim/sim_impl.h"
 
+/* Channels beside muscles, in the order of asset/channel.c; tests/unit/test_model.c checks it. */
+enum {
+    RIS__JAW_OPEN,
+    RIS__JAW_FORWARD,
+    RIS__JAW_SIDE,
+    RIS__EYE_YAW_L,
+    RIS__EYE_YAW_R,
+    RIS__EYE_PITCH_L,
+    RIS__EYE_PITCH_R,
+    RIS__HEAD_YAW,
+    RIS__HEAD_PITCH,
+    RIS__HEAD_ROLL,
+    RIS__HEAD_X,
+    RIS__HEAD_Y,
+    RIS__HEAD_Z,
+    RIS__LID_UPPER_L,
+    RIS__LID_UPPER_R,
+    RIS__LID_LOWER_L,
+    RIS__LID_LOWER_R
+};
+
 /* x -> rotation (x - point) + point + shift; identity leaves bits alone. */
 typedef struct ris_rigid {
     float rotation[9]; /* row-major */
@@ -39,6 +60,8 @@ typedef struct ris_rig {
     ris_vec3 *target;        /* of the previous tick (node_count) */
     ris_anchor_point *point; /* (node_count) */
     ris_vec4 *delta;         /* (node_count) */
+    /* lid_pose */
+    ris_vec3 *lid_move; /* what muscles and jaw move the nodes of the lids by, mm (lid_count) */
 } ris_rig;
 
 ris_result ris__rig_init(ris_rig *rig, const ris_model *model, ris_error *err);
@@ -53,9 +76,12 @@ void ris__muscle_constrain(ris_rig *rig);
 void ris__muscle_relax(ris_rig *rig);
 void ris__muscle_bulge(ris_rig *rig);
 void ris__muscle_attach(ris_rig *rig);
+void ris__lid_pose(ris_rig *rig, const float *pose);
 
 /* Formulas of the stages, alone for the hand-computed numbers of spec/kaehler.md 5. */
 
+/* Cosine and sine from fixed series: the same bits on every machine. */
+void ris__cos_sin(double angle_rad, double *out_cos, double *out_sin);
 /* KA-05. Rotation by angle_rad about the unit axis through point. */
 ris_rigid ris__rigid_turn(ris_vec3 point, ris_vec3 axis, double angle_rad);
 ris_vec3 ris__rigid_apply(const ris_rigid *rigid, ris_vec3 x);

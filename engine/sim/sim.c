@@ -112,6 +112,7 @@ static void run_muscle_stages(ris_sim *sim, const float *pose)
     ris__muscle_relax(&sim->rig);
     ris__muscle_bulge(&sim->rig);
     ris__muscle_attach(&sim->rig);
+    ris__lid_pose(&sim->rig, pose);
 }
 
 ris_result ris__sim_pose(ris_sim *sim, const float *pose, ris_anchor_frame *out, ris_error *err)

@@ -14,7 +14,7 @@ void main()
 {
     vec3 n = normalize(in_normal), v = normalize(view.eye.xyz - in_world);
     vec3 albedo = base_color(in_uv);
-    float ao = clamp(in_rest.w, 0.0, 1.0);
+    float ao = clamp(in_rest.w, 0.5, 1.0); // baked at rest: what a turned eye brings out of the socket is not black
     vec3 local = normalize(in_rest.xyz - object.pivot.xyz);
     float iris = smoothstep(0.82, 0.90, local.z); // the iris covers about 30 degrees around the axis
     vec3 diffuse = vec3(0.0), shine = vec3(0.0);

@@ -63,6 +63,27 @@ typedef struct ris_group {
     uint32_t first_point, point_count;
 } ris_group;
 
+/* An eyeball under its lids, at rest looking along +z: a ball with the cornea's sphere in front. */
+typedef struct ris_lid_eye {
+    ris_vec3 centre; /* mm */
+    float ball_mm, cornea_mm, cornea_at_mm; /* radii; distance between their centres, 0 = no bulge */
+    float open_rad;                         /* largest opening between the margins, seen from the centre */
+} ris_lid_eye;
+
+/* A node of a lid, or of the socket's lining just behind it. Lids turn about the lateral axis through the
+ * centre of the eye. Weights are 1 at the margin and 0 at the border of the lid's region. */
+typedef struct ris_lid_node {
+    uint32_t node;
+    uint32_t facing[2];  /* lower margin that the node's column meets when closed: into ris_model.lid */
+    float facing_share;  /* 0..1, of facing[1] */
+    uint8_t eye;         /* 0 = L, 1 = R */
+    bool upper, lining;
+    float weight_close, weight_open;
+    float close_rad, close_mm;        /* upper: down to the lower margin at rest, change of distance from axis */
+    float share, lower_share; /* opening of the column over open_rad, own and at the lower margin it meets */
+    float gap_mm;                     /* from the surface of the eye at rest; negative in the lining */
+} ris_lid_node;
+
 typedef struct ris_model {
     const ris_head *head; /* not owned when built by ris_model_create */
     ris_head *owned_head; /* the same head when built by ris_model_load, else NULL */
@@ -100,6 +121,9 @@ typedef struct ris_model {
     uint32_t group_count, group_point_count;
     ris_group *group;
     ris_group_point *group_point;
+    uint32_t lid_count; /* 0 without eyes, lids or in the kaehler tissue */
+    ris_lid_node *lid;  /* ascending node (lid_count) */
+    ris_lid_eye lid_eye[2];
     ris_vec3 *bone_anchor;   /* point on the bone below the node at rest, mm (node_count) */
     const float *jaw_weight; /* (node_count) */
 } ris_model;

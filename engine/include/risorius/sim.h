@@ -1,5 +1,5 @@
 /* The simulation: a pose in, skin positions and normals out, on the CPU or on a Vulkan device. One thread
- * per sim. One tick = 1/60 s: jaw_pose .. muscle_attach on the host, anchor_shift, substeps of [bend,
+ * per sim. One tick = 1/60 s: jaw_pose .. lid_pose on the host, anchor_shift, substeps of [bend,
  * spring_force, verlet], normal on the backend. */
 #pragma once
 
@@ -40,7 +40,7 @@ const char *ris_state_name(ris_state state);
 /* Backend times of the last tick, ms; host and wait filled by every backend, stages where it can measure
  * them. */
 typedef struct ris_sim_times {
-    double muscle_ms;                 /* jaw_pose .. muscle_attach on the host */
+    double muscle_ms;                 /* jaw_pose .. lid_pose on the host */
     double upload_ms;                 /* anchor upload */
     double stage_ms[RIS_STAGE_COUNT]; /* sum over substeps */
     double wait_ms;                   /* record, submit and fence wait (0 on the CPU) */
