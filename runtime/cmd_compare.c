@@ -41,7 +41,7 @@ static uint64_t differing_words(const ris_compare_report *report)
     return words;
 }
 
-static void print_text(const ris_compare_report *report)
+static void print_text(const ris_compare_report *report, bool over)
 {
     printf("A  %s\nB  %s\n", report->backend[0], report->backend[1]);
     printf("%u nodes, %u simulated, %u moved by 2 mm or more; %u frames of %u substeps\n\n",
@@ -55,9 +55,9 @@ static void print_text(const ris_compare_report *report)
     printf("\nhash A %016llx\nhash B %016llx\n", (unsigned long long)report->hash[0],
            (unsigned long long)report->hash[1]);
     if (report->differs) {
-        printf("first difference: stage %s, frame %u, substep %u, vertex %u\n",
-               ris_stage_name(report->first_stage), report->first_tick, report->first_substep,
-               report->first_vertex);
+        printf("first %s: stage %s, frame %u, substep %u, vertex %u\n",
+               over ? "over tolerance" : "difference", ris_stage_name(report->first_stage),
+               report->first_tick, report->first_substep, report->first_vertex);
         printf("GPU and CPU differ: %llu words over the clip, %llu of %u frames\n",
                (unsigned long long)differing_words(report), (unsigned long long)report->differing_ticks,
                report->tick_count);
@@ -77,7 +77,7 @@ static void print_json_stages(const char *name, const ris_compare_stage *stage)
     printf("\n  },\n");
 }
 
-static void print_json(const ris_compare_report *report)
+static void print_json(const ris_compare_report *report, bool over)
 {
     printf("{\n  \"backends\": [");
     cli_json_string(stdout, report->backend[0]);
@@ -93,9 +93,9 @@ static void print_json(const ris_compare_report *report)
            (unsigned long long)report->hash[0], (unsigned long long)report->hash[1],
            (unsigned long long)report->differing_ticks);
     if (report->differs) {
-        printf("  \"first\": {\"stage\": \"%s\", \"frame\": %u, \"substep\": %u, \"vertex\": %u},\n",
-               ris_stage_name(report->first_stage), report->first_tick, report->first_substep,
-               report->first_vertex);
+        printf("  \"%s\": {\"stage\": \"%s\", \"frame\": %u, \"substep\": %u, \"vertex\": %u},\n",
+               over ? "first_over_tolerance" : "first_difference", ris_stage_name(report->first_stage),
+               report->first_tick, report->first_substep, report->first_vertex);
     }
     printf("  \"equal\": %s\n}\n", report->differs ? "false" : "true");
 }
@@ -122,7 +122,7 @@ static ris_result compare(const ris_cli *cli, const compare_args *args, ris_back
     r = ris_compare_run(&def, &report, err);
     progress_end(&user.bar);
     if (!r || report.differs) {
-        (cli->json ? print_json : print_text)(&report);
+        (cli->json ? print_json : print_text)(&report, r != RIS_OK);
     }
     ris_clip_destroy(clip);
     return r;

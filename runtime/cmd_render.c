@@ -34,17 +34,33 @@ typedef struct render_job {
     ris_sheet sheet;
 } render_job;
 
+/* Two outputs of one name would write over each other. */
+static ris_result check_names(const render_args *args, ris_error *err)
+{
+    for (uint32_t i = 0; i < args->out.count; i++) {
+        bool twice = args->contact && strcmp(args->contact, args->out.item[i]) == 0;
+        for (uint32_t k = 0; k < i; k++) {
+            twice = twice || strcmp(args->out.item[i], args->out.item[k]) == 0;
+        }
+        if (twice) {
+            return ris_fail(err, RIS_ERROR_USAGE, "'%s' is named as two outputs", args->out.item[i]);
+        }
+    }
+    return RIS_OK;
+}
+
 static ris_result check_outputs(render_job *render, ris_error *err)
 {
     const render_args *args = render->args;
     bool moving = false;
-    for (uint32_t i = 0; i < args->out.count; i++) {
-        ris_result r = render_out_name(&render->out[i], args->out.item[i], err);
-        if (r) {
-            return r;
-        }
+    ris_result r = check_names(args, err);
+    for (uint32_t i = 0; !r && i < args->out.count; i++) {
+        r = render_out_name(&render->out[i], args->out.item[i], err);
         render->draws = render->draws || render_out_draws(&render->out[i]);
         moving = moving || render->out[i].kind != RENDER_PNG;
+    }
+    if (r) {
+        return r;
     }
     bool still = args->out.count > 0 && !moving;
     if (args->clip && still && !args->at) {

@@ -85,6 +85,8 @@ static void wrong_words_are_usage_errors(void **state)
     expect("render " HEAD " --clip a -o %04d%04d.png", 2, "%d");
     expect("render " HEAD " --clip a -o a%n.png", 2, "%d");
     expect("render " HEAD " --clip a -o one.png", 2, "--at");
+    expect("render " HEAD " --clip a -o a.mp4 -o a.mp4", 2, "two outputs");
+    expect("render " HEAD " --clip a -o a%d.png --contact a%d.png", 2, "two outputs");
     expect("export " HEAD, 2, "-o");
     expect("export " HEAD " --clip c -o x.obj", 2, "--at");
 #ifdef RISORIUS_VULKAN
