@@ -257,9 +257,10 @@ ris_result landmarks_read(const char *path, landmark_set *set, ris_error *err);
 typedef struct skull_report {
     uint32_t open_edges[2];
     double asymmetry[2];
-    double least_depth[2];    /* of a vertex under the skin, mm; negative = outside */
+    double least_depth[2];    /* of a vertex or edge midpoint under the skin, mm; negative = outside */
     double worst_depth_error; /* largest |depth - table| / table */
     char worst_site[16];
+    double worst_near_error;      /* the same of the shortest distance from the skin landmark to the bone */
     double orbit_free, nose_free; /* least free length past the rim of the frontal rays, mm */
     double arch_free;             /* free vertical length medial to the arch, mm */
     double condyle_off;           /* distance of the worse condyle from the axis */
@@ -279,6 +280,8 @@ typedef struct skull_input {
     dvec jaw_point, jaw_axis; /* the head's hinge; axis is unit */
 } skull_input;
 
+/* Edges of either bone that pierce the other. */
+uint32_t skull_crossings(const tri_mesh bone[2], const bvh tree[2]);
 ris_result skull_measure(const skull_input *in, skull_report *out, ris_error *err);
 void skull_print(const skull_report *r);
 /* The bounds of docs/skull.md; false with the first broken one in err. */

@@ -26,6 +26,12 @@ static ris_result measure_depths(const skull_input *in, skull_report *out, ris_e
             depth[i] = bvh_depth(&in->skin->tree, m->position[i]);
         qsort(depth, m->vertex_count, sizeof *depth, compare_doubles);
         out->least_depth[k] = depth[0];
+        for (uint32_t i = 0; i < m->triangle_count * 3; i++) {
+            dvec p = m->position[m->triangle[i]], q = m->position[m->triangle[i % 3 == 2 ? i - 2 : i + 1]];
+            if (m->triangle[i] < m->triangle[i % 3 == 2 ? i - 2 : i + 1])
+                out->least_depth[k] =
+                    fmin(out->least_depth[k], bvh_depth(&in->skin->tree, dv_mad(p, 0.5, dv_sub(q, p))));
+        }
         uint32_t near = 0;
         for (uint32_t i = 0; i < m->vertex_count; i++)
             near += fabs(depth[i] - depth[m->vertex_count / 2]) < 2;
@@ -49,6 +55,11 @@ static void measure_sites(const skull_input *in, skull_report *out)
             out->worst_depth_error = error;
             memcpy(out->worst_site, l->name, sizeof out->worst_site);
         }
+        for (uint32_t k = 0; l->table_mm > 0 && k < in->landmark->skin_count; k++)
+            if (strcmp(in->landmark->skin[k].name, l->name) == 0) {
+                double near = bvh_closest(&in->tree[l->bone], in->landmark->skin[k].at).distance;
+                out->worst_near_error = fmax(out->worst_near_error, fabs(near - l->table_mm) / l->table_mm);
+            }
     }
 }
 
@@ -175,6 +186,11 @@ static void measure_roots(const skull_input *in, skull_report *out)
     }
 }
 
+uint32_t skull_crossings(const tri_mesh bone[2], const bvh tree[2])
+{
+    return piercing_edges(&bone[1], &tree[0]) + piercing_edges(&bone[0], &tree[1]);
+}
+
 ris_result skull_measure(const skull_input *in, skull_report *out, ris_error *err)
 {
     *out = (skull_report){0};
@@ -191,7 +207,7 @@ ris_result skull_measure(const skull_input *in, skull_report *out, ris_error *er
     measure_openings(in, out);
     measure_condyles(in, out);
     measure_roots(in, out);
-    out->crossing = piercing_edges(&in->bone[1], &in->tree[0]) + piercing_edges(&in->bone[0], &in->tree[1]);
+    out->crossing = skull_crossings(in->bone, in->tree);
     return RIS_OK;
 }
 
@@ -202,6 +218,7 @@ void skull_print(const skull_report *r)
     printf("least depth           %.2f skull, %.2f mandible mm under the skin\n", r->least_depth[0],
            r->least_depth[1]);
     printf("worst site            %s, %.1f %% off the table\n", r->worst_site, 100 * r->worst_depth_error);
+    printf("nearest bone          at most %.1f %% off the table\n", 100 * r->worst_near_error);
     printf("frontal rays          orbit %.1f mm, nose %.1f mm free past the rim\n", r->orbit_free,
            r->nose_free);
     printf("under the arch        %.1f mm free up and down\n", r->arch_free);
@@ -223,6 +240,8 @@ bool skull_accept(const skull_report *r, ris_error *err)
         broken = "bone stands out of the skin";
     else if (!(r->worst_depth_error <= 0.30))
         broken = "a tissue depth is more than 30 % off the table";
+    else if (!(r->worst_near_error <= 0.30))
+        broken = "the bone nearest to a site is more than 30 % off the table";
     else if (!(r->orbit_free >= 15))
         broken = "a frontal ray into an orbit meets bone within 15 mm";
     else if (!(r->nose_free >= 15))
