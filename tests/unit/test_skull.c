@@ -1,4 +1,5 @@
-/* The committed skull, mandible and landmarks of the reference head (KA-04, KA-07): the bounds of docs/skull.md, measured
+/* The committed skull, mandible and landmarks of the reference head (KA-04, KA-07): the bounds of
+ * docs/skull.md, measured
  * on the files, and controls that each measurement notices what it is for. */
 #include "make_skull.h"
 
@@ -161,7 +162,8 @@ static uint32_t crossings_after(double degrees, dvec shift)
     return crossing;
 }
 
-/* The hinge of head.json (axis along x) opens the jaw to its limit without bone in bone; a jaw pushed back is noticed. */
+/* The hinge of head.json (axis along x) opens the jaw to its limit without bone in bone; a jaw pushed back
+ * is noticed. */
 static void test_jaw_opens_freely(void **state)
 {
     (void)state;
@@ -197,7 +199,8 @@ static const landmark *find(const landmark *list, uint32_t count, const char *na
     return NULL;
 }
 
-/* Distance of the stored place from the one its triangle and weights give, and whether the triangle is of the mesh. */
+/* Distance of the stored place from the one its triangle and weights give, and whether the triangle is of
+ * the mesh. */
 static double off_surface(const tri_mesh *mesh, uint32_t triangles, const landmark *l)
 {
     dvec p = {0};

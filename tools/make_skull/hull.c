@@ -1,4 +1,5 @@
-/* The outer skin as a closed surface: without the eye sockets and the mouth's lining, openings closed by fans (KA-01). */
+/* The outer skin as a closed surface: without the eye sockets and the mouth's lining, openings closed by
+ * fans (KA-01). */
 #include "make_skull.h"
 
 #include "risorius/head.h"

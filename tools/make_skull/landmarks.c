@@ -7,7 +7,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Skin landmarks: seed near the place; a direction, when given, is the ray from the seed that finds the skin. */
+/* Skin landmarks: seed near the place; a direction, when given, is the ray from the seed that finds the
+ * skin. */
 typedef struct seed {
     const char *name;
     bool bilateral;
@@ -155,7 +156,8 @@ ris_result landmarks_place(landmark_set *set, const hull *h, const tri_mesh bone
 {
     *set = (landmark_set){0};
     ris_result result = RIS_OK;
-    /* pairs first: where a site and an anthropometric point share a name, the eye corners excepted, they are one */
+    /* pairs first: where a site and an anthropometric point share a name, the eye corners excepted, they
+     * are one */
     for (uint32_t i = 0; i < sizeof seeds / sizeof *seeds && result == RIS_OK; i++)
         for (int right = 0; right <= seeds[i].bilateral && result == RIS_OK; right++)
             if (strcmp(seeds[i].name, "or") != 0)

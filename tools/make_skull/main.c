@@ -1,4 +1,5 @@
-/* risorius-make-skull HEAD_DIR: writes skull.obj, mandible.obj and landmarks.json into HEAD_DIR and prints what they
+/* risorius-make-skull HEAD_DIR: writes skull.obj, mandible.obj and landmarks.json into HEAD_DIR and prints
+ * what they
  * keep to (KA-04, KA-07). */
 #include "make_skull.h"
 

@@ -1,5 +1,7 @@
-/* Skull, mandible and landmarks under a skin (KA-04, KA-07, KA-08): shapes, meshing, fit, measurement. Library of
- * risorius-make-skull and of its test. mm everywhere; x to the subject's left, y up, z out of the face; the right half
+/* Skull, mandible and landmarks under a skin (KA-04, KA-07, KA-08): shapes, meshing, fit, measurement.
+ * Library of
+ * risorius-make-skull and of its test. mm everywhere; x to the subject's left, y up, z out of the face; the
+ * right half
  * is the mirror of the left. */
 #pragma once
 
@@ -102,7 +104,8 @@ double bvh_depth(const bvh *tree, dvec p);
 
 /* ---- the outer skin (hull.c) ---- */
 
-/* The skin without eye sockets and mouth cavity, its openings (lids, lips, neck) closed by fans: a closed surface that
+/* The skin without eye sockets and mouth cavity, its openings (lids, lips, neck) closed by fans: a closed
+ * surface that
  * has an inside. The first skin_triangles triangles are of the skin itself, vertex indices as in skin.obj. */
 typedef struct hull {
     tri_mesh mesh;
@@ -195,7 +198,8 @@ double mandible_clearance(dvec p);
 
 /* ---- meshing (mesher.c, simplify.c) ---- */
 
-/* Marching tetrahedra of the left half on a grid of the given step, every vertex on the zero level; vertices with x = 0
+/* Marching tetrahedra of the left half on a grid of the given step, every vertex on the zero level;
+ * vertices with x = 0
  * exactly lie on the mirror plane. low and high bound the bone. */
 ris_result mesh_half(const solid *s, dvec low, dvec high, double step, tri_mesh *out, ris_error *err);
 /* Quadric edge collapse down to target triangles; border vertices (x = 0) stay on the mirror plane. */

@@ -1,4 +1,5 @@
-/* The mandible at rest, built for the reference head (KA-04): teeth nearly closed, condyles before the ear canals. */
+/* The mandible at rest, built for the reference head (KA-04): teeth nearly closed, condyles before the ear
+ * canals. */
 #include "make_skull.h"
 
 static const shape parts[] = {

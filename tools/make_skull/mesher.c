@@ -1,4 +1,5 @@
-/* Marching tetrahedra of the left half of a bone, on cubes cut into six along the diagonal: always a manifold. */
+/* Marching tetrahedra of the left half of a bone, on cubes cut into six along the diagonal: always a
+ * manifold. */
 #include "make_skull.h"
 
 #include <stdlib.h>

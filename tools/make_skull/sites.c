@@ -7,7 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* seed lies near the bone, out points to the skin. aim keeps a chin where the mean table would smooth it away. */
+/* seed lies near the bone, out points to the skin. aim keeps a chin where the mean table would smooth it
+ * away. */
 static const site table[] = {
     {"tr", false, 0, {0, 82, 80}, {0, 0.45, 0.89}, 1, 20, 0},
     {"g", false, 0, {0, 44, 88}, {0, 0, 1}, 1, 14, 0},
