@@ -1,5 +1,6 @@
-/* The skull without the mandible, built by eye for the reference head (KA-04). Dimensions follow its skin in the
- * Frankfort pose: glabella z 93, nasion (0, 26, 88), porion (60, 0, 0), orbits about (31, 17), arch at x 62. */
+/* The skull without the mandible, built by eye for the reference head (KA-04). Its dimensions follow the skin
+ * in the Frankfort pose: glabella z 93, nasion (0, 26, 88), porion (60, 0, 0), orbits about (31, 17), arch at
+ * x 62. */
 #include "make_skull.h"
 
 /* Vault, occiput, base: everything behind the face. */
