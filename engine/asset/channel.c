@@ -5,7 +5,7 @@ const ris_beside_channel ris__beside_channel[] = {
     {"jaw.open", 0, 1},      {"jaw.forward", -1, 1},   {"jaw.side", -1, 1},      {"eye.yaw.L", -35, 35},
     {"eye.yaw.R", -35, 35},  {"eye.pitch.L", -30, 30}, {"eye.pitch.R", -30, 30}, {"head.yaw", -80, 80},
     {"head.pitch", -60, 60}, {"head.roll", -45, 45},   {"head.x", -200, 200},    {"head.y", -200, 200},
-    {"head.z", -200, 200},   {"lid.upper.L", -1, 1},   {"lid.upper.R", -1, 1},  {"lid.lower.L", -1, 1},
+    {"head.z", -200, 200},   {"lid.upper.L", -1, 1},   {"lid.upper.R", -1, 1},   {"lid.lower.L", -1, 1},
     {"lid.lower.R", -1, 1},
 };
 const uint32_t ris__beside_channel_count = sizeof ris__beside_channel / sizeof ris__beside_channel[0];

@@ -185,8 +185,9 @@ static ris_draw_ride ride_on_surface(const piece *skin, const ris_model *model, 
         const uint32_t *quad = skin->refined.quad + 4 * (size_t)q;
         for (uint32_t half = 0; half < (quad[2] == quad[3] ? 1u : 2u); half++) {
             const uint32_t corner[3] = {quad[0], quad[1 + half], quad[2 + half]};
-            float share[3], distance = ris__ride_nearest(foot, skin->position[corner[0]], skin->position[corner[1]],
-                                                         skin->position[corner[2]], share);
+            float share[3],
+                distance = ris__ride_nearest(foot, skin->position[corner[0]], skin->position[corner[1]],
+                                             skin->position[corner[2]], share);
             if (distance < nearest && bind_to_surface(skin, corner, share, away, normal, &best)) {
                 nearest = distance;
             }

@@ -1,4 +1,4 @@
-/* Eyelids (design: "lids turn about the eyeball"; KA-48 names the movement, the thesis does not say how the
+/* Eyelids (they turn about the eyeball; KA-48 names the movement, the thesis does not say how the
  * lid mesh moves). Nodes of lid_upper and lid_lower are sorted into rings, counted from the lining of the
  * socket (eye_socket): rings up to the margin are the ledge of the lid, which moves with it as one; the rings
  * behind it form columns up to the border of the region. Each column of an upper lid learns by what angle it

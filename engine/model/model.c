@@ -64,9 +64,9 @@ static ris_result check_head(const ris_head *head, ris_error *err)
 ris_result ris_model_create(const ris_head *head, ris_model **out, ris_error *err)
 {
     static ris_result (*const builders[])(ris_bake *, ris_error *) = {
-        ris__bake_triangles, ris__bake_mass,     ris__bake_springs, ris__bake_grids, ris__bake_muscles,
-        ris__bake_groups,    ris__bake_bindings, ris__bake_anchors, ris__bake_lids, ris__bake_push,
-        ris__bake_channels,
+        ris__bake_triangles, ris__bake_mass,   ris__bake_springs,  ris__bake_grids,
+        ris__bake_muscles,   ris__bake_groups, ris__bake_bindings, ris__bake_anchors,
+        ris__bake_lids,      ris__bake_push,   ris__bake_channels,
     };
     *out = NULL;
     ris_result result = check_head(head, err);

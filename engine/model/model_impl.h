@@ -40,7 +40,7 @@ ris_result ris__bake_bindings(ris_bake *bake, ris_error *err);
 ris_result ris__bake_anchors(ris_bake *bake, ris_error *err);
 /* Nodes of the eyelids with their weights and closing angles; thinner, firmly held skin there. */
 ris_result ris__bake_lids(ris_bake *bake, ris_error *err);
-/* Constants of the stages and the stable time step (spec 2.9). */
+/* Constants of the stages and the stable time step (docs/physics.md). */
 ris_result ris__bake_push(ris_bake *bake, ris_error *err);
 /* KA-48: the channel table. */
 ris_result ris__bake_channels(ris_bake *bake, ris_error *err);

@@ -94,8 +94,8 @@ static void pose_jaw(ris_rig *rig, const float *beside)
 {
     const ris_jaw_def *def = &rig->model->head->jaw;
     const float forward = beside[RIS__JAW_FORWARD];
-    rig->jaw =
-        ris__rigid_turn(def->point, def->axis, (double)beside[RIS__JAW_OPEN] * (double)def->open_deg * PI / 180.0);
+    rig->jaw = ris__rigid_turn(def->point, def->axis,
+                               (double)beside[RIS__JAW_OPEN] * (double)def->open_deg * PI / 180.0);
     rig->jaw.shift = v3(def->side_mm * beside[RIS__JAW_SIDE], 0.0f,
                         forward * (forward < 0.0f ? def->back_mm : def->forward_mm));
     rig->jaw.identity = beside[RIS__JAW_OPEN] == 0.0f && beside[RIS__JAW_SIDE] == 0.0f && forward == 0.0f;
@@ -106,14 +106,15 @@ void ris__jaw_pose(ris_rig *rig, const float *pose)
     const ris_model *model = rig->model;
     const float *beside = pose + rig->first_beside;
     pose_jaw(rig, beside);
-    rig->eye[0] =
-        yaw_pitch_roll(part_pivot(model->head, RIS_BONE_EYE_L), beside[RIS__EYE_YAW_L], beside[RIS__EYE_PITCH_L], 0.0f);
-    rig->eye[1] =
-        yaw_pitch_roll(part_pivot(model->head, RIS_BONE_EYE_R), beside[RIS__EYE_YAW_R], beside[RIS__EYE_PITCH_R], 0.0f);
-    rig->head = yaw_pitch_roll(v3(0, 0, 0), beside[RIS__HEAD_YAW], beside[RIS__HEAD_PITCH], beside[RIS__HEAD_ROLL]);
+    rig->eye[0] = yaw_pitch_roll(part_pivot(model->head, RIS_BONE_EYE_L), beside[RIS__EYE_YAW_L],
+                                 beside[RIS__EYE_PITCH_L], 0.0f);
+    rig->eye[1] = yaw_pitch_roll(part_pivot(model->head, RIS_BONE_EYE_R), beside[RIS__EYE_YAW_R],
+                                 beside[RIS__EYE_PITCH_R], 0.0f);
+    rig->head =
+        yaw_pitch_roll(v3(0, 0, 0), beside[RIS__HEAD_YAW], beside[RIS__HEAD_PITCH], beside[RIS__HEAD_ROLL]);
     rig->head.shift = v3(beside[RIS__HEAD_X], beside[RIS__HEAD_Y], beside[RIS__HEAD_Z]);
-    rig->head.identity =
-        rig->head.identity && beside[RIS__HEAD_X] == 0.0f && beside[RIS__HEAD_Y] == 0.0f && beside[RIS__HEAD_Z] == 0.0f;
+    rig->head.identity = rig->head.identity && beside[RIS__HEAD_X] == 0.0f && beside[RIS__HEAD_Y] == 0.0f &&
+                         beside[RIS__HEAD_Z] == 0.0f;
 
     /* the default tissue moves muscles in the closed-jaw space and turns their targets with the node's own
      * jaw weight */

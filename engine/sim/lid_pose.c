@@ -1,5 +1,5 @@
-/* lid_pose, last host stage: the lids turn about the lateral axis through the centre of the eye (design 4;
- * KA-48). lid.upper 1 carries the margin of the upper lid onto the lower margin, wherever that is; -1 widens;
+/* lid_pose (KA-48), last host stage: the lids turn about the lateral axis through the centre of the eye.
+ * lid.upper 1 carries the margin of the upper lid onto the lower margin, wherever that is; -1 widens;
  * lid.lower 1 raises the lower lid, -1 lowers it; the pitch of the eye carries both. Anchors stay off the
  * ball and the cornea. */
 #include "sim/rig.h"

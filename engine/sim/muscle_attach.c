@@ -1,5 +1,5 @@
-/* muscle_attach, last host stage: KA-37 attached points follow their segments; KA-14, KA-15 anchors of the
- * tick.
+/* muscle_attach, last stage of the muscles: KA-37 attached points follow their segments; KA-14, KA-15
+ * anchors of the tick.
  *
  * Default tissue (docs/physics.md), node at rest X, bindings (muscle, weight w, activity s in 0..1):
  *     P      = X + sum w s delta / max(1, sum w s)          delta blended over the segments of the binding

@@ -78,7 +78,7 @@ void ris__muscle_bulge(ris_rig *rig);
 void ris__muscle_attach(ris_rig *rig);
 void ris__lid_pose(ris_rig *rig, const float *pose);
 
-/* Formulas of the stages, alone for the hand-computed numbers of spec/kaehler.md 5. */
+/* Formulas of the stages, alone for the hand-computed numbers of the tests. */
 
 /* Cosine and sine from fixed series: the same bits on every machine. */
 void ris__cos_sin(double angle_rad, double *out_cos, double *out_sin);

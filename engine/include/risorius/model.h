@@ -65,7 +65,7 @@ typedef struct ris_group {
 
 /* An eyeball under its lids, at rest looking along +z: a ball with the cornea's sphere in front. */
 typedef struct ris_lid_eye {
-    ris_vec3 centre; /* mm */
+    ris_vec3 centre;                        /* mm */
     float ball_mm, cornea_mm, cornea_at_mm; /* radii; distance between their centres, 0 = no bulge */
     float open_rad;                         /* largest opening between the margins, seen from the centre */
 } ris_lid_eye;
@@ -74,14 +74,14 @@ typedef struct ris_lid_eye {
  * centre of the eye. Weights are 1 at the margin and 0 at the border of the lid's region. */
 typedef struct ris_lid_node {
     uint32_t node;
-    uint32_t facing[2];  /* lower margin that the node's column meets when closed: into ris_model.lid */
-    float facing_share;  /* 0..1, of facing[1] */
-    uint8_t eye;         /* 0 = L, 1 = R */
+    uint32_t facing[2]; /* lower margin that the node's column meets when closed: into ris_model.lid */
+    float facing_share; /* 0..1, of facing[1] */
+    uint8_t eye;        /* 0 = L, 1 = R */
     bool upper, lining;
     float weight_close, weight_open;
-    float close_rad, close_mm;        /* upper: down to the lower margin at rest, change of distance from axis */
-    float share, lower_share; /* opening of the column over open_rad, own and at the lower margin it meets */
-    float gap_mm;                     /* from the surface of the eye at rest; negative in the lining */
+    float close_rad, close_mm; /* upper: down to the lower margin at rest, change of distance from axis */
+    float share, lower_share;  /* opening of the column over open_rad, own and at the lower margin it meets */
+    float gap_mm;              /* from the surface of the eye at rest; negative in the lining */
 } ris_lid_node;
 
 typedef struct ris_model {
@@ -105,7 +105,7 @@ typedef struct ris_model {
     float *node_area_mm2;      /* third of the incident triangles (node_count) */
     float mass_g;
     ris_sim_push push; /* constants of the stages with dt_s = 1/60/substeps */
-    float stable_dt_s; /* bound of spec/kaehler.md 2.9 */
+    float stable_dt_s; /* bound of docs/physics.md, stable step */
 
     /* rig */
     uint32_t channel_count, muscle_count, fiber_count, fiber_point_count, segment_count;
