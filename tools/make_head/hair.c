@@ -170,7 +170,7 @@ static void add_lash(part *p, const curve *rim, const lash_rule *rule, dvec eye,
     dvec out =
         v_unit(v_add(v3(0.25 * radial.x, 0, 1), v_mul(tangent, 0.85 * (s - 0.42) + 0.10 * spread(state))));
     double from = -rule->droop_deg * PI / 180, to = rule->curl_deg * PI / 180 * (0.9 + 0.2 * chance(state));
-    dvec at = v_mad(v_mad(root, up, -0.05), out, -0.25 + 0.25 * spread(state)), points[POINTS], sides[POINTS];
+    dvec at = v_mad(v_mad(root, up, -0.05), out, -0.08 + 0.08 * spread(state)), points[POINTS], sides[POINTS];
     for (int k = 0; k < POINTS; k++) {
         double f = k / (POINTS - 1.0), a = from + (to - from) * pow(f, 0.9);
         dvec ahead = v_add(v_mul(out, cos(a)), v_mul(up, sin(a)));
