@@ -13,8 +13,10 @@
 #include "risorius/device.h"
 #endif
 
-#define SMALL_NODES 5000u /* below, lavapipe is faster without worker threads */
-#define TOLERANCE_MM 1e-2 /* of a device that is not bit-identical, as `compare` allows over a clip */
+#define SAMPLES_MAX 10000000u /* frames x repeats */
+#define SMALL_NODES 5000u     /* below, lavapipe is faster without worker threads */
+#define TOLERANCE_MM 1e-2     /* of a device that is not bit-identical, as `compare` allows over a clip */
+#define SAMPLES_MAX 10000000u
 #define COLUMNS (RIS_STAGE_COUNT + 4)
 
 typedef struct bench_args {
@@ -264,13 +266,23 @@ static ris_result open_bench(bench_run *bench, const ris_cli *cli, const bench_a
     if (!r && bench->backend.model->node_count < SMALL_NODES) {
         setenv("LP_NUM_THREADS", "0", 0);
     }
+    if (!r && (uint64_t)bench->ticks * args->repeats > SAMPLES_MAX) {
+        r = ris_fail(err, RIS_ERROR_USAGE, "--repeat: %u frames x %u repeats are more than %u", bench->ticks,
+                     args->repeats, SAMPLES_MAX);
+    }
     if (!r) {
         r = backend_start(&bench->backend, cli, &(backend_need){.sim = true}, err);
     }
     if (!r) {
         r = ris_sim_create_cpu(bench->backend.model, &bench->reference, err);
     }
-    bench->sample_capacity = bench->ticks * args->repeats;
+    uint64_t samples = (uint64_t)bench->ticks * args->repeats;
+    if (!r && samples > SAMPLES_MAX) {
+        r = ris_fail(err, RIS_ERROR_USAGE,
+                     "%u frames x %u repeats are more than %u: fewer repeats or a shorter clip", bench->ticks,
+                     args->repeats, SAMPLES_MAX);
+    }
+    bench->sample_capacity = r ? 0 : (uint32_t)samples;
     for (uint32_t c = 0; !r && c < COLUMNS; c++) {
         bench->sample[c] = calloc(bench->sample_capacity + 1u, sizeof **bench->sample);
         r = bench->sample[c] ? RIS_OK : ris_fail(err, RIS_ERROR_MEMORY, "out of memory for the samples");

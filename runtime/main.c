@@ -138,6 +138,9 @@ int main(int argc, char **argv)
                 ris_fail(&err, RIS_ERROR_FAILED, "cannot write to the standard output: %s", strerror(errno));
         }
     }
+    if (result && interrupt_seen()) {
+        interrupt_check(&err); /* Ctrl-C reaches ffmpeg too, whose end is then not the news */
+    }
     if (result) {
         fprintf(stderr, "risorius: %s\n", err.text);
     }
