@@ -114,6 +114,21 @@ static void bad_clips(void **state)
         "clip.json:2:");
 }
 
+/* 86,400 s x 60 x 1,000 samples do not fit 32 bits. */
+static void an_endless_benchmark_is_refused(void **state)
+{
+    (void)state;
+    char folder[COMMAND_PATH_SIZE], path[COMMAND_PATH_SIZE + 32], line[3 * COMMAND_PATH_SIZE];
+    command_folder(folder, "endless");
+    snprintf(path, sizeof path, "%s/clip.json", folder);
+    command_write_file(path,
+                       "{\"format\": \"risorius-clip\", \"version\": 1, \"duration_s\": 86400, \"tracks\": "
+                       "[{\"target\": \"jaw.open\", \"keys\": [{\"t\": 0, \"v\": 0}]}]}");
+    snprintf(line, sizeof line, "--device cpu bench " HEAD " --clip '%s' --repeat 1000", path);
+    command_run(&run, NULL, line);
+    expect_code("endless", 2, "5184000 frames x 1000 repeats");
+}
+
 static void unknown_names_on_the_command_line(void **state)
 {
     (void)state;
@@ -133,6 +148,7 @@ int main(void)
         cmocka_unit_test(bad_json_names_line_and_column),
         cmocka_unit_test(bad_meshes),
         cmocka_unit_test(bad_clips),
+        cmocka_unit_test(an_endless_benchmark_is_refused),
         cmocka_unit_test(unknown_names_on_the_command_line),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
