@@ -1,4 +1,4 @@
-/* Channels beside the muscles (KA-48, design: "Channels beside muscles"). The model's channel table is the
+/* Channels beside the muscles (KA-48; docs/file-formats.md). The model's channel table is the
  * muscles followed by these in this order; the head loader checks expression terms against the same names. */
 #pragma once
 

@@ -1,4 +1,4 @@
-/* Whole-file input, and output that appears under its name only when it is complete (design: nothing
+/* Whole-file input, and output that appears under its name only when it is complete (nothing
  * half-written). */
 #pragma once
 

@@ -1,4 +1,4 @@
-/* FNV-1a, 64 bit: the state hash of a simulation (design: determinism) and anything else that wants a
+/* FNV-1a, 64 bit: the state hash of a simulation and anything else that wants a
  * fingerprint. Bytes are hashed as they lie in memory, so hashes compare between little-endian machines only.
  * */
 #pragma once

@@ -16,7 +16,7 @@ typedef struct ris_compare_def {
     uint32_t moved_minimum;  /* refuse a clip in which fewer nodes move by 2 mm */
 } ris_compare_def;
 
-/* Fills a and b and the defaults of the design: 0 and 0 when either side runs on lavapipe (bit equality),
+/* Fills a and b and the defaults: 0 and 0 when either side runs on lavapipe (bit equality),
  * else 1e-4 mm after a step and 1e-2 mm over the clip; 500 moved nodes. The caller sets tick_count, pose,
  * user. */
 ris_compare_def ris_default_compare_def(ris_sim *a, ris_sim *b);

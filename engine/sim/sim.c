@@ -12,7 +12,7 @@
 #include <string.h>
 
 #define LARGEST_MM 1e5f        /* a node this far out has diverged */
-#define REST_SPEED_MM_S 0.1f   /* design: at rest */
+#define REST_SPEED_MM_S 0.1f   /* at rest, docs/physics.md */
 #define REST_TICKS 15          /* 0.25 s */
 #define SETTLE_TICKS (20 * 60) /* 20 s */
 

@@ -1,4 +1,4 @@
-/* Structs, bindings and sizes of the raster pass, read by C and GLSL (design: written once). layout(scalar). */
+/* Structs, bindings and sizes of the raster pass, read by C and GLSL. layout(scalar). */
 /* clang-format off */ /* the macros below read as structs to C and GLSL, not to the formatter */
 #ifndef RIS_DRAW_SHARED_H
 #define RIS_DRAW_SHARED_H

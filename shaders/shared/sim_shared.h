@@ -1,4 +1,4 @@
-/* Structs, bindings and group sizes of the simulation, read by C and GLSL (design: written once).
+/* Structs, bindings and group sizes of the simulation, read by C and GLSL.
  * Blocks use layout(scalar); tests/layout checks offsets, strides, bindings and group sizes against the SPIR-V. */
 /* clang-format off */ /* the macros below read as structs to C and GLSL, not to the formatter */
 #ifndef RIS_SIM_SHARED_H

@@ -1,4 +1,4 @@
-/* The committed head and clips load, and say what the design promises of them. */
+/* The committed head and clips load, and say what the docs promise of them. */
 #include "scratch.h"
 
 #include "risorius/timeline.h"
