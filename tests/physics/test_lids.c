@@ -2,40 +2,18 @@
  * the gaze do, stay off the ball and the cornea's mesh,
  * keep their corners, open wide, follow the gaze, mirror.
  * Rings of the lids are found here from regions and faces, not from the bake. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
-#include "model/vec3.h"
-#include "risorius/sim.h"
-
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "loaded_head.h"
 
 #define MARGIN_RING 2 /* from the lining of the socket outwards */
 #define GAP_MM 0.3f
 
 enum { UPPER = 1, LOWER = 2, CORNER = 3 };
 
-static ris_error err;
-static ris_model *model;
-static ris_sim *sim;
-static float *pose;
-static ris_vec4 *x, *rest, *other;
+static ris_vec4 *rest, *other;
 static uint8_t *lid;   /* UPPER | LOWER, left eye */
 static uint32_t *ring; /* left eye */
 static uint32_t (*edge)[2];
 static uint32_t edge_count;
-
-static void need(ris_result result)
-{
-    if (result != RIS_OK) {
-        fail_msg("%s", err.text);
-    }
-}
 
 static void find_edges(void)
 {
@@ -86,13 +64,9 @@ static void find_rings(void)
 static int open_head(void **state)
 {
     (void)state;
-    if (ris_model_load(RIS_SOURCE_DIR "/assets/human", &model, &err) != RIS_OK ||
-        ris_sim_create_cpu(model, &sim, &err) != RIS_OK) {
-        print_error("%s\n", err.text);
+    if (load_head() != 0) {
         return -1;
     }
-    pose = calloc(model->channel_count, sizeof *pose);
-    x = malloc(model->node_count * sizeof *x);
     other = malloc(model->node_count * sizeof *other);
     rest = model->rest_position;
     lid = calloc(model->node_count, sizeof *lid);
@@ -105,10 +79,7 @@ static int open_head(void **state)
 static int close_head(void **state)
 {
     (void)state;
-    ris_sim_destroy(sim);
-    ris_model_destroy(model);
-    free(pose);
-    free(x);
+    free_head();
     free(other);
     free(lid);
     free(ring);
@@ -121,13 +92,6 @@ static void set(const char *name, float value)
     const uint32_t c = ris_model_channel(model, name);
     assert_true(c < model->channel_count);
     pose[c] = value;
-}
-
-static void settle(void)
-{
-    need(ris_sim_reset(sim, &err));
-    need(ris_sim_settle(sim, pose, NULL, &err));
-    need(ris_sim_read(sim, RIS_STATE_POSITION, x, &err));
 }
 
 /* Both eyes; pitch and yaw in degrees. */

@@ -1,34 +1,10 @@
 /* The whole muscle set of the reference head: no dead muscle (KA-48), no folded skin, mirrored activation
  * mirrors the result, linear muscles shorten by activation x max_shortening (KA-31), and every record says
  * where it comes from. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
-#include "model/vec3.h"
-#include "risorius/sim.h"
+#include "loaded_head.h"
 #include "sim/rig.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-static ris_error err;
-static ris_model *model;
-static ris_sim *sim;
-static float *pose;
-static ris_vec4 *x;
-static uint32_t *mirror; /* node at the mirrored place, or UINT32_MAX */
-static bool *inside;     /* node of the lips, the mouth, the lids or the socket, where skin may roll in */
-
-static void need(ris_result result)
-{
-    if (result != RIS_OK) {
-        fail_msg("%s", err.text);
-    }
-}
+static bool *inside; /* node of the lips, the mouth, the lids or the socket, where skin may roll in */
 
 static void mark_inside(void)
 {
@@ -41,35 +17,16 @@ static void mark_inside(void)
     }
 }
 
-static void find_mirrors(void)
-{
-    for (uint32_t i = 0; i < model->node_count; ++i) {
-        const ris_vec3 p = v4_xyz(model->rest_position[i]);
-        mirror[i] = UINT32_MAX;
-        for (uint32_t j = 0; j < model->node_count && mirror[i] == UINT32_MAX; ++j) {
-            if (v3_distance(v3(-p.x, p.y, p.z), v4_xyz(model->rest_position[j])) < 1e-3f) {
-                mirror[i] = j;
-            }
-        }
-    }
-}
-
 static int open_head(void **state)
 {
     (void)state;
-    if (ris_model_load(RIS_SOURCE_DIR "/assets/human", &model, &err) != RIS_OK ||
-        ris_sim_create_cpu(model, &sim, &err) != RIS_OK) {
-        print_error("%s\n", err.text);
+    if (load_head() != 0) {
         return -1;
     }
-    pose = calloc(model->channel_count, sizeof *pose);
-    x = malloc(model->node_count * sizeof *x);
-    mirror = malloc(model->node_count * sizeof *mirror);
     inside = calloc(model->node_count, sizeof *inside);
-    if (!pose || !x || !mirror || !inside) {
+    if (!inside) {
         return -1;
     }
-    find_mirrors();
     mark_inside();
     return 0;
 }
@@ -77,11 +34,7 @@ static int open_head(void **state)
 static int close_head(void **state)
 {
     (void)state;
-    ris_sim_destroy(sim);
-    ris_model_destroy(model);
-    free(pose);
-    free(x);
-    free(mirror);
+    free_head();
     free(inside);
     return 0;
 }
@@ -105,11 +58,6 @@ static float largest_motion(void)
         most = f_max(most, v3_distance(v4_xyz(x[i]), v4_xyz(model->rest_position[i])));
     }
     return most;
-}
-
-static ris_vec3 triangle_cross(const ris_vec4 *p, const uint32_t *v)
-{
-    return v3_cross(v3_sub(v4_xyz(p[v[1]]), v4_xyz(p[v[0]])), v3_sub(v4_xyz(p[v[2]]), v4_xyz(p[v[0]])));
 }
 
 /* Triangles of the outer skin whose normal has turned by more than 90 degrees. */

@@ -1,68 +1,20 @@
 /* The reference head: what must hold of its motion whatever the calibration. Rest, settling, mirror
  * symmetry, who moves what, no torn or folded skin, and grids that matter. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <cmocka.h>
-
-#include "model/vec3.h"
-#include "risorius/sim.h"
-
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-static ris_error err;
-static ris_model *model;
-static ris_sim *sim;
-static float *pose;
-static ris_vec4 *x;
-static uint32_t *mirror; /* node at the mirrored place, or UINT32_MAX */
-
-static void need(ris_result result)
-{
-    if (result != RIS_OK) {
-        fail_msg("%s", err.text);
-    }
-}
-
-static void find_mirrors(void)
-{
-    for (uint32_t i = 0; i < model->node_count; ++i) {
-        const ris_vec3 p = v4_xyz(model->rest_position[i]);
-        mirror[i] = UINT32_MAX;
-        for (uint32_t j = 0; j < model->node_count && mirror[i] == UINT32_MAX; ++j) {
-            if (v3_distance(v3(-p.x, p.y, p.z), v4_xyz(model->rest_position[j])) < 1e-3f) {
-                mirror[i] = j;
-            }
-        }
-    }
-}
+#include "loaded_head.h"
 
 static int open_head(void **state)
 {
     (void)state;
-    if (ris_model_load(RIS_SOURCE_DIR "/assets/human", &model, &err) != RIS_OK ||
-        ris_sim_create_cpu(model, &sim, &err) != RIS_OK) {
-        print_error("%s\n", err.text);
+    if (load_head() != 0) {
         return -1;
     }
-    pose = calloc(model->channel_count, sizeof *pose);
-    x = malloc(model->node_count * sizeof *x);
-    mirror = malloc(model->node_count * sizeof *mirror);
-    find_mirrors();
     return 0;
 }
 
 static int close_head(void **state)
 {
     (void)state;
-    ris_sim_destroy(sim);
-    ris_model_destroy(model);
-    free(pose);
-    free(x);
-    free(mirror);
+    free_head();
     return 0;
 }
 
@@ -70,7 +22,6 @@ static int close_head(void **state)
 static double hold(const char *first, const char *second)
 {
     const char *const names[] = {first, second};
-    double time_s = 0.0;
     memset(pose, 0, model->channel_count * sizeof *pose);
     for (int k = 0; k < 2; ++k) {
         uint32_t set = 0;
@@ -85,10 +36,7 @@ static double hold(const char *first, const char *second)
         }
         assert_true(!names[k] || set > 0);
     }
-    need(ris_sim_reset(sim, &err));
-    need(ris_sim_settle(sim, pose, &time_s, &err));
-    need(ris_sim_read(sim, RIS_STATE_POSITION, x, &err));
-    return time_s;
+    return settle();
 }
 
 static ris_vec3 moved(uint32_t i)
@@ -106,11 +54,6 @@ static float region_motion(const char *name)
         largest = f_max(largest, v3_length(moved(region->vertex[k])));
     }
     return largest;
-}
-
-static ris_vec3 triangle_cross(const ris_vec4 *p, const uint32_t *v)
-{
-    return v3_cross(v3_sub(v4_xyz(p[v[1]]), v4_xyz(p[v[0]])), v3_sub(v4_xyz(p[v[2]]), v4_xyz(p[v[0]])));
 }
 
 /* No spike, no tear, no fold: edges within 4 x rest, few triangles turned over. */
