@@ -16,8 +16,8 @@ void ris_vk_barrier(VkCommandBuffer cmd, VkPipelineStageFlags2 src_stage, VkAcce
     vkCmdPipelineBarrier2(cmd, &info);
 }
 
-void ris_vk_image_barrier(VkCommandBuffer cmd, VkImage image, VkImageAspectFlags aspect, ris_vk_access from,
-                          ris_vk_access to)
+void ris_vk_range_barrier(VkCommandBuffer cmd, VkImage image, VkImageSubresourceRange range,
+                          ris_vk_access from, ris_vk_access to)
 {
     VkImageMemoryBarrier2 barrier = {
         .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
@@ -30,12 +30,19 @@ void ris_vk_image_barrier(VkCommandBuffer cmd, VkImage image, VkImageAspectFlags
         .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
         .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
         .image = image,
-        .subresourceRange = {aspect, 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS},
+        .subresourceRange = range,
     };
     VkDependencyInfo info = {.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
                              .imageMemoryBarrierCount = 1,
                              .pImageMemoryBarriers = &barrier};
     vkCmdPipelineBarrier2(cmd, &info);
+}
+
+void ris_vk_image_barrier(VkCommandBuffer cmd, VkImage image, VkImageAspectFlags aspect, ris_vk_access from,
+                          ris_vk_access to)
+{
+    const VkImageSubresourceRange all = {aspect, 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
+    ris_vk_range_barrier(cmd, image, all, from, to);
 }
 
 ris_result ris_vk_cmd_create(ris_device *vk, const char *name, ris_vk_cmd *out, ris_error *err)

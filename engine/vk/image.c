@@ -83,23 +83,8 @@ void ris_vk_image_finish(ris_device *vk, ris_vk_image *image)
 static void level_barrier(VkCommandBuffer cmd, const ris_vk_image *image, uint32_t level, ris_vk_access from,
                           ris_vk_access to)
 {
-    VkImageMemoryBarrier2 barrier = {
-        .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
-        .srcStageMask = from.stage,
-        .srcAccessMask = from.access,
-        .oldLayout = from.layout,
-        .dstStageMask = to.stage,
-        .dstAccessMask = to.access,
-        .newLayout = to.layout,
-        .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-        .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-        .image = image->handle,
-        .subresourceRange = {image->aspect, level, 1, 0, 1},
-    };
-    VkDependencyInfo info = {.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
-                             .imageMemoryBarrierCount = 1,
-                             .pImageMemoryBarriers = &barrier};
-    vkCmdPipelineBarrier2(cmd, &info);
+    const VkImageSubresourceRange one = {image->aspect, level, 1, 0, 1};
+    ris_vk_range_barrier(cmd, image->handle, one, from, to);
 }
 
 static int32_t half(int32_t size)

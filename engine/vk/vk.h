@@ -153,7 +153,10 @@ typedef struct ris_vk_access {
     VkImageLayout layout; /* of images only */
 } ris_vk_access;
 
-/* Layout change and dependency for all levels of an image. */
+/* Layout change and dependency for some levels of an image. */
+void ris_vk_range_barrier(VkCommandBuffer cmd, VkImage image, VkImageSubresourceRange range,
+                          ris_vk_access from, ris_vk_access to);
+/* The same for all levels. */
 void ris_vk_image_barrier(VkCommandBuffer cmd, VkImage image, VkImageAspectFlags aspect, ris_vk_access from,
                           ris_vk_access to);
 
