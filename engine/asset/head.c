@@ -11,7 +11,7 @@ typedef ris_result json_reader(const ris_json *json, ris_head *head, ris_error *
 typedef ris_result text_reader(const char *name, const char *text, size_t size, ris_head *head,
                                ris_error *err);
 
-/* Reads the JSON file named by key; an absent optional key reads nothing. read may be NULL: syntax only. */
+/* Reads the JSON file named by key; an absent optional key reads nothing. */
 static ris_result read_json(const ris_json_at *root, const char *key, ris_json_need need, json_reader *read,
                             ris_head *head, ris_error *err)
 {
@@ -25,7 +25,7 @@ static ris_result read_json(const ris_json_at *root, const char *key, ris_json_n
     if (result == RIS_OK && path) {
         result = ris__json_load(path, &json, err);
     }
-    if (result == RIS_OK && path && read) {
+    if (result == RIS_OK && path) {
         result = read(&json, head, err);
     }
     ris__json_finish(&json);
@@ -54,16 +54,22 @@ static ris_result read_text(const ris_json_at *root, const char *key, ris_json_n
     return result;
 }
 
-static ris_result read_skin(const ris_json_at *root, ris_head *head, ris_error *err)
+/* The OBJ file named by key; an absent optional key leaves *out empty. What is simulated must be sound
+ * (ris_mesh_check); a bone is only asked for distances and may have slivers. */
+static ris_result read_mesh(const ris_json_at *root, const char *key, ris_json_need need,
+                            const ris_head *head, ris_mesh *out, ris_error *err)
 {
-    ris_json_at at = ris__json_key(root, "skin");
+    ris_json_at at = ris__json_key(root, key);
     char *path;
     ris_result result = ris__read_file_key(&at, head->directory, &path, err);
-    if (result == RIS_OK && !path) {
+    if (result == RIS_OK && !path && need == RIS_JSON_REQUIRED) {
         result = ris__json_expected(&at, err, "a file name");
     }
-    if (result == RIS_OK && (result = ris_mesh_load_obj(path, &head->skin, err)) == RIS_OK) {
-        result = ris_mesh_check(&head->skin, path, err);
+    if (result == RIS_OK && path) {
+        result = ris_mesh_load_obj(path, out, err);
+    }
+    if (result == RIS_OK && path && need == RIS_JSON_REQUIRED) {
+        result = ris_mesh_check(out, path, err);
     }
     free(path);
     return result;
@@ -88,9 +94,9 @@ static ris_result read_simulated(const ris_json_at *root, ris_head *head, ris_er
 
 static ris_result read_head(const ris_json *json, ris_head *head, ris_error *err)
 {
-    static const char *const keys[] = {
-        "format", "version", "units",     "skin",        "map",   "color", "regions", "simulated",
-        "depth",  "muscles", "landmarks", "expressions", "parts", "jaw",   "tissue",  NULL};
+    static const char *const keys[] = {"format",    "version",     "units", "skin",     "map",    "color",
+                                       "regions",   "simulated",   "skull", "mandible", "depth",  "muscles",
+                                       "landmarks", "expressions", "parts", "jaw",      "tissue", NULL};
     static const char *const units_known[] = {"mm", NULL};
     ris_json_at root = ris__json_root(json);
     ris_json_at units = ris__json_key(&root, "units"), color = ris__json_key(&root, "color");
@@ -101,7 +107,9 @@ static ris_result read_head(const ris_json *json, ris_head *head, ris_error *err
     if ((result = ris__json_check_format(&root, "risorius-head", 1, err)) ||
         (result = ris__json_check_object(&root, keys, err)) ||
         (result = ris__json_choice(&units, RIS_JSON_OPTIONAL, units_known, &unit, err)) ||
-        (result = read_skin(&root, head, err)) ||
+        (result = read_mesh(&root, "skin", RIS_JSON_REQUIRED, head, &head->skin, err)) ||
+        (result = read_mesh(&root, "skull", RIS_JSON_OPTIONAL, head, &head->skull, err)) ||
+        (result = read_mesh(&root, "mandible", RIS_JSON_OPTIONAL, head, &head->mandible, err)) ||
         (result = read_text(&root, "map", RIS_JSON_OPTIONAL, ris__map_read, head, err)) ||
         (result = ris__read_file_key(&color, head->directory, &head->color, err)) ||
         (result = read_json(&root, "regions", RIS_JSON_REQUIRED, ris__regions_read, head, err)) ||
@@ -109,7 +117,7 @@ static ris_result read_head(const ris_json *json, ris_head *head, ris_error *err
         (result = read_text(&root, "depth", RIS_JSON_REQUIRED, ris__depth_read, head, err)) ||
         (result = ris__jaw_read(&jaw, head, err)) || (result = ris__tissue_read(&tissue, head, err)) ||
         (result = read_json(&root, "muscles", RIS_JSON_REQUIRED, ris__muscles_read, head, err)) ||
-        (result = read_json(&root, "landmarks", RIS_JSON_OPTIONAL, NULL, head, err)) ||
+        (result = read_json(&root, "landmarks", RIS_JSON_OPTIONAL, ris__landmarks_read, head, err)) ||
         (result =
              read_json(&root, "expressions", RIS_JSON_OPTIONAL, ris__head_expressions_read, head, err)) ||
         (result = ris__parts_read(&parts, head, err))) {
@@ -138,6 +146,9 @@ ris_result ris_head_load(const char *directory, ris_head *out, ris_error *err)
 void ris_head_finish(ris_head *head)
 {
     ris_mesh_finish(&head->skin);
+    ris_mesh_finish(&head->skull);
+    ris_mesh_finish(&head->mandible);
+    free(head->landmark);
     for (uint32_t i = 0; i < head->region_count; i++) {
         free(head->region[i].vertex);
     }

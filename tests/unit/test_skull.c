@@ -37,9 +37,9 @@ static int load(void **state)
     ok = ok && hull_load(HUMAN, &skin, &err) == RIS_OK &&
          landmarks_read(HUMAN "/landmarks.json", &marks, &err) == RIS_OK;
     for (int k = 0; k < 2 && ok; k++)
-        ok = tri_load_obj(bones[k], &bone[k], &err) == RIS_OK &&
-             tri_load_obj(crowns[k], &teeth[k], &err) == RIS_OK &&
-             bvh_build(&tree[k], &bone[k], &err) == RIS_OK;
+        ok = ris__tri_load_obj(bones[k], &bone[k], &err) == RIS_OK &&
+             ris__tri_load_obj(crowns[k], &teeth[k], &err) == RIS_OK &&
+             ris__bvh_build(&tree[k], &bone[k], &err) == RIS_OK;
     if (!ok)
         print_error("%s\n", err.text);
     return ok ? 0 : -1;
@@ -50,9 +50,9 @@ static int unload(void **state)
     (void)state;
     hull_finish(&skin);
     for (int k = 0; k < 2; k++) {
-        bvh_finish(&tree[k]);
-        tri_finish(&bone[k]);
-        tri_finish(&teeth[k]);
+        ris__bvh_finish(&tree[k]);
+        ris__tri_finish(&bone[k]);
+        ris__tri_finish(&teeth[k]);
     }
     return 0;
 }
@@ -87,11 +87,11 @@ static void test_controls_are_noticed(void **state)
     bvh trees[2];
     ris_error err = {0};
     for (int k = 0; k < 2; k++) {
-        assert_int_equal(tri_load_obj(k ? HUMAN "/mandible.obj" : HUMAN "/skull.obj", &moved[k], &err),
+        assert_int_equal(ris__tri_load_obj(k ? HUMAN "/mandible.obj" : HUMAN "/skull.obj", &moved[k], &err),
                          RIS_OK);
         for (uint32_t i = 0; i < moved[k].vertex_count; i++)
             moved[k].position[i].z += k ? -8 : 6;
-        assert_int_equal(bvh_build(&trees[k], &moved[k], &err), RIS_OK);
+        assert_int_equal(ris__bvh_build(&trees[k], &moved[k], &err), RIS_OK);
     }
     skull_report r = measure(moved, trees, &marks, jaw_point);
     assert_true(r.least_depth[0] < 0);
@@ -105,8 +105,8 @@ static void test_controls_are_noticed(void **state)
     r = measure(moved, tree, &marks, jaw_point);
     assert_true(r.asymmetry[0] > 0.4 && r.open_edges[0] == 3);
     for (int k = 0; k < 2; k++) {
-        bvh_finish(&trees[k]);
-        tri_finish(&moved[k]);
+        ris__bvh_finish(&trees[k]);
+        ris__tri_finish(&moved[k]);
     }
     r = measure(bone, tree, &marks, dv_add(jaw_point, dv(0, 3, 4)));
     assert_true(r.condyle_off > 3);
@@ -126,17 +126,18 @@ static void test_shrunken_skin_is_refused(void **state)
     shrunk[0].position = malloc(skin.mesh.vertex_count * sizeof *normal);
     assert_true(normal && shrunk[0].position);
     for (uint32_t i = 0; i < skin.mesh.triangle_count * 3; i++)
-        normal[skin.mesh.triangle[i]] = dv_add(normal[skin.mesh.triangle[i]], tri_normal(&skin.mesh, i / 3));
+        normal[skin.mesh.triangle[i]] =
+            dv_add(normal[skin.mesh.triangle[i]], ris__tri_normal(&skin.mesh, i / 3));
     for (uint32_t i = 0; i < skin.mesh.vertex_count; i++)
         shrunk[0].position[i] = dv_mad(skin.mesh.position[i], -4, dv_unit(normal[i]));
     bvh trees[2] = {{0}, tree[1]};
-    assert_int_equal(bvh_build(&trees[0], &shrunk[0], &err), RIS_OK);
+    assert_int_equal(ris__bvh_build(&trees[0], &shrunk[0], &err), RIS_OK);
     skull_report r = measure(shrunk, trees, &marks, jaw_point);
     assert_true(r.orbit_free < 15);
     assert_true(r.nose_free < 15);
     assert_true(r.arch_free < 12);
     assert_true(r.shrink_share > 0.6);
-    bvh_finish(&trees[0]);
+    ris__bvh_finish(&trees[0]);
     free(shrunk[0].position);
     free(normal);
 }
@@ -148,17 +149,17 @@ static uint32_t crossings_after(double degrees, dvec shift)
     bvh t;
     ris_error err = {0};
     double c = cos(degrees * 0.017453292519943295), s = sin(degrees * 0.017453292519943295);
-    assert_int_equal(tri_load_obj(HUMAN "/mandible.obj", &turned, &err), RIS_OK);
+    assert_int_equal(ris__tri_load_obj(HUMAN "/mandible.obj", &turned, &err), RIS_OK);
     for (uint32_t i = 0; i < turned.vertex_count; i++) {
         dvec p = dv_sub(turned.position[i], jaw_point);
         turned.position[i] = dv_add(dv_add(jaw_point, shift), dv(p.x, p.y * c - p.z * s, p.y * s + p.z * c));
     }
-    assert_int_equal(bvh_build(&t, &turned, &err), RIS_OK);
+    assert_int_equal(ris__bvh_build(&t, &turned, &err), RIS_OK);
     tri_mesh both[2] = {bone[0], turned};
     bvh trees[2] = {tree[0], t};
     uint32_t crossing = skull_crossings(both, trees);
-    bvh_finish(&t);
-    tri_finish(&turned);
+    ris__bvh_finish(&t);
+    ris__tri_finish(&turned);
     return crossing;
 }
 
@@ -178,13 +179,13 @@ static void test_eyes_fit(void **state)
     (void)state;
     ris_error err = {0};
     tri_mesh eye;
-    assert_int_equal(tri_load_obj(HUMAN "/eye.L.obj", &eye, &err), RIS_OK);
+    assert_int_equal(ris__tri_load_obj(HUMAN "/eye.L.obj", &eye, &err), RIS_OK);
     double nearest = HUGE_VAL, moved = HUGE_VAL;
     for (uint32_t i = 0; i < eye.vertex_count; i++) {
-        nearest = fmin(nearest, -bvh_depth(&tree[0], eye.position[i]));
-        moved = fmin(moved, -bvh_depth(&tree[0], dv_add(eye.position[i], dv(0, 15, 0))));
+        nearest = fmin(nearest, -ris__bvh_depth(&tree[0], eye.position[i]));
+        moved = fmin(moved, -ris__bvh_depth(&tree[0], dv_add(eye.position[i], dv(0, 15, 0))));
     }
-    tri_finish(&eye);
+    ris__tri_finish(&eye);
     print_message("eyeball to orbit %.2f mm\n", nearest);
     assert_true(nearest > 0);
     assert_true(moved < 0);
@@ -289,13 +290,13 @@ static void test_queries(void **state)
     assert_int_equal(tri_open_edges(&cube, &open, &err), RIS_OK);
     assert_int_equal(open, 0);
     assert_true(fabs(tri_volume(&cube) - 1) < 1e-12);
-    assert_int_equal(bvh_build(&t, &cube, &err), RIS_OK);
-    assert_true(fabs(bvh_depth(&t, dv(0.5, 0.5, 0.9)) - 0.1) < 1e-12);
-    assert_true(fabs(bvh_depth(&t, dv(2, 2, 1)) + sqrt(2)) < 1e-12);
-    bvh_hit hit = bvh_ray(&t, dv(0.3, 0.6, 5), dv(0, 0, -1), 0, 100);
+    assert_int_equal(ris__bvh_build(&t, &cube, &err), RIS_OK);
+    assert_true(fabs(ris__bvh_depth(&t, dv(0.5, 0.5, 0.9)) - 0.1) < 1e-12);
+    assert_true(fabs(ris__bvh_depth(&t, dv(2, 2, 1)) + sqrt(2)) < 1e-12);
+    bvh_hit hit = ris__bvh_ray(&t, dv(0.3, 0.6, 5), dv(0, 0, -1), 0, 100);
     assert_true(hit.found && fabs(hit.distance - 4) < 1e-12);
-    assert_false(bvh_ray(&t, dv(0.3, 0.6, 5), dv(0, 0, -1), 0, 3.9).found);
-    bvh_finish(&t);
+    assert_false(ris__bvh_ray(&t, dv(0.3, 0.6, 5), dv(0, 0, -1), 0, 3.9).found);
+    ris__bvh_finish(&t);
 }
 
 /* A ball by the same mesher: closed, symmetric, its volume and every vertex within the lattice's error. */
@@ -320,8 +321,8 @@ static void test_mesher(void **state)
     assert_true(fabs(tri_volume(&ball) / (4.0 / 3 * 3.14159265358979 * 1000) - 1) < 0.02);
     for (uint32_t i = 0; i < ball.vertex_count; i++)
         assert_true(fabs(dv_length(ball.position[i]) - 10) < 0.15);
-    tri_finish(&half);
-    tri_finish(&ball);
+    ris__tri_finish(&half);
+    ris__tri_finish(&ball);
     solid_finish(&s);
 }
 

@@ -42,7 +42,7 @@ void fit_sites(solid bone[2], const hull *h, const site *sites, uint32_t count)
     for (int round = 0; round < ROUNDS; round++)
         for (uint32_t i = 0; i < count; i++) {
             const site *t = &sites[i];
-            bvh_hit skin = bvh_ray(&h->tree, t->seed, t->out, 0, 60);
+            bvh_hit skin = ris__bvh_ray(&h->tree, t->seed, t->out, 0, 60);
             double depth;
             dvec in = dv(-t->out.x, -t->out.y, -t->out.z);
             if (slot[i] < 0 || !skin.found || !enter(&bone[t->bone], skin.at, in, &depth))

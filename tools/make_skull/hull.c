@@ -102,7 +102,7 @@ ris_result hull_load(const char *directory, hull *out, ris_error *err)
         result = ris_fail(err, RIS_ERROR_DATA, "%s: the outer skin cannot be closed, %u open edges",
                           directory, open);
     if (result == RIS_OK)
-        result = bvh_build(&out->tree, mesh, err);
+        result = ris__bvh_build(&out->tree, mesh, err);
 fail:
     free(inner);
     free(next);
@@ -114,7 +114,7 @@ fail:
 
 void hull_finish(hull *h)
 {
-    bvh_finish(&h->tree);
-    tri_finish(&h->mesh);
+    ris__bvh_finish(&h->tree);
+    ris__tri_finish(&h->mesh);
     *h = (hull){0};
 }

@@ -72,15 +72,15 @@ static dvec side(dvec p, bool right)
 /* Closest point on the skin itself, not on a fan that closes an opening. */
 static bvh_hit on_skin(const hull *h, dvec p)
 {
-    bvh_hit hit = bvh_closest(&h->tree, p);
+    bvh_hit hit = ris__bvh_closest(&h->tree, p);
     if (hit.triangle < h->skin_triangles)
         return hit;
     tri_mesh skin = h->mesh;
     skin.triangle_count = h->skin_triangles;
     bvh tree = {0};
-    if (bvh_build(&tree, &skin, NULL) == RIS_OK)
-        hit = bvh_closest(&tree, p);
-    bvh_finish(&tree);
+    if (ris__bvh_build(&tree, &skin, NULL) == RIS_OK)
+        hit = ris__bvh_closest(&tree, p);
+    ris__bvh_finish(&tree);
     return hit;
 }
 
@@ -106,7 +106,7 @@ static bvh_hit on_midline(const hull *h, dvec p)
 static ris_result place_seed(landmark_set *set, const hull *h, const seed *s, bool right, ris_error *err)
 {
     dvec at = side(s->at, right), ray = side(s->ray, right);
-    bvh_hit hit = dv_length(ray) > 0 ? bvh_ray(&h->tree, at, dv_unit(ray), 0, 120)
+    bvh_hit hit = dv_length(ray) > 0 ? ris__bvh_ray(&h->tree, at, dv_unit(ray), 0, 120)
                   : s->bilateral     ? on_skin(h, at)
                                      : on_midline(h, at);
     if (!hit.found || hit.triangle >= h->skin_triangles)
@@ -130,10 +130,10 @@ static ris_result place_site(landmark_set *set, const hull *h, const tri_mesh bo
                              const site *s, bool right, ris_error *err)
 {
     dvec out = side(s->out, right), in = dv(-out.x, -out.y, -out.z), from = side(s->seed, right);
-    bvh_hit skin = bvh_ray(&h->tree, from, out, 0, 60);
+    bvh_hit skin = ris__bvh_ray(&h->tree, from, out, 0, 60);
     if (!skin.found || skin.triangle >= h->skin_triangles)
         return ris_fail(err, RIS_ERROR_DATA, "the dowel of site %s does not meet the skin", s->name);
-    bvh_hit hit = bvh_ray(&tree[s->bone], skin.at, in, 0, 60);
+    bvh_hit hit = ris__bvh_ray(&tree[s->bone], skin.at, in, 0, 60);
     if (!hit.found)
         return ris_fail(err, RIS_ERROR_DATA, "the dowel of site %s does not meet the bone", s->name);
     landmark *b = &set->bone[set->bone_count++], seated = {0};

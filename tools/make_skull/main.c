@@ -73,7 +73,7 @@ static ris_result load(job *j, ris_error *err)
     for (int k = 0; k < 2 && result == RIS_OK; k++) {
         result = ris__path_join(path, j->head, teeth[k], err);
         if (result == RIS_OK)
-            result = tri_load_obj(path, &j->teeth[k], err);
+            result = ris__tri_load_obj(path, &j->teeth[k], err);
     }
     j->site_count = sites_default(j->site);
     if (result == RIS_OK)
@@ -113,9 +113,9 @@ static ris_result build(job *j, ris_error *err)
             mesh_round(&half);
             result = mesh_mirror(&half, &j->bone[k], err);
         }
-        tri_finish(&half);
+        ris__tri_finish(&half);
         if (result == RIS_OK)
-            result = bvh_build(&j->tree[k], &j->bone[k], err);
+            result = ris__bvh_build(&j->tree[k], &j->bone[k], err);
     }
     return result;
 }
@@ -190,9 +190,9 @@ int main(int argc, char **argv)
     hull_finish(&j.skin);
     depth_grid_finish(&j.depth);
     for (int k = 0; k < 2; k++) {
-        bvh_finish(&j.tree[k]);
-        tri_finish(&j.bone[k]);
-        tri_finish(&j.teeth[k]);
+        ris__bvh_finish(&j.tree[k]);
+        ris__tri_finish(&j.bone[k]);
+        ris__tri_finish(&j.teeth[k]);
         solid_finish(&j.solid[k]);
     }
     return ris_exit_code(result);

@@ -23,14 +23,14 @@ static ris_result measure_depths(const skull_input *in, skull_report *out, ris_e
             return ris_fail(err, RIS_ERROR_MEMORY, "no depths for %u vertices", m->vertex_count);
         }
         for (uint32_t i = 0; i < m->vertex_count; i++)
-            depth[i] = bvh_depth(&in->skin->tree, m->position[i]);
+            depth[i] = ris__bvh_depth(&in->skin->tree, m->position[i]);
         qsort(depth, m->vertex_count, sizeof *depth, compare_doubles);
         out->least_depth[k] = depth[0];
         for (uint32_t i = 0; i < m->triangle_count * 3; i++) {
             dvec p = m->position[m->triangle[i]], q = m->position[m->triangle[i % 3 == 2 ? i - 2 : i + 1]];
             if (m->triangle[i] < m->triangle[i % 3 == 2 ? i - 2 : i + 1])
                 out->least_depth[k] =
-                    fmin(out->least_depth[k], bvh_depth(&in->skin->tree, dv_mad(p, 0.5, dv_sub(q, p))));
+                    fmin(out->least_depth[k], ris__bvh_depth(&in->skin->tree, dv_mad(p, 0.5, dv_sub(q, p))));
         }
         uint32_t near = 0;
         for (uint32_t i = 0; i < m->vertex_count; i++)
@@ -57,7 +57,7 @@ static void measure_sites(const skull_input *in, skull_report *out)
         }
         for (uint32_t k = 0; l->table_mm > 0 && k < in->landmark->skin_count; k++)
             if (strcmp(in->landmark->skin[k].name, l->name) == 0) {
-                double near = bvh_closest(&in->tree[l->bone], in->landmark->skin[k].at).distance;
+                double near = ris__bvh_closest(&in->tree[l->bone], in->landmark->skin[k].at).distance;
                 out->worst_near_error = fmax(out->worst_near_error, fabs(near - l->table_mm) / l->table_mm);
             }
     }
@@ -66,7 +66,7 @@ static void measure_sites(const skull_input *in, skull_report *out)
 /* z where a frontal ray meets the skull, or -200. */
 static double front(const skull_input *in, double x, double y)
 {
-    bvh_hit hit = bvh_ray(&in->tree[0], dv(x, y, 200), dv(0, 0, -1), 0, 400);
+    bvh_hit hit = ris__bvh_ray(&in->tree[0], dv(x, y, 200), dv(0, 0, -1), 0, 400);
     return hit.found ? hit.at.z : -200;
 }
 
@@ -106,9 +106,9 @@ static void measure_openings(const skull_input *in, skull_report *out)
     out->arch_free = HUGE_VAL;
     for (int side = -1; side <= 1; side += 2) {
         dvec in_dir = dv(-side, 0, 0);
-        bvh_hit outer = bvh_ray(&in->tree[0], dv(100 * side, -3, 33), in_dir, 0, 100);
-        bvh_hit inner = bvh_ray(&in->tree[0], dv_mad(outer.at, 1e-3, in_dir), in_dir, 0, 100);
-        bvh_hit wall = bvh_ray(&in->tree[0], dv_mad(inner.at, 1e-3, in_dir), in_dir, 0, 100);
+        bvh_hit outer = ris__bvh_ray(&in->tree[0], dv(100 * side, -3, 33), in_dir, 0, 100);
+        bvh_hit inner = ris__bvh_ray(&in->tree[0], dv_mad(outer.at, 1e-3, in_dir), in_dir, 0, 100);
+        bvh_hit wall = ris__bvh_ray(&in->tree[0], dv_mad(inner.at, 1e-3, in_dir), in_dir, 0, 100);
         if (!outer.found || !inner.found || !wall.found || inner.distance > 9) {
             out->arch_free = 0; /* no arch that stands free */
             return;
@@ -116,7 +116,7 @@ static void measure_openings(const skull_input *in, skull_report *out)
         for (int k = 0; k < 2; k++)
             for (int turn = -1; turn <= 1; turn += 2) {
                 dvec from = dv_mad(inner.at, 0.4 * wall.distance, in_dir);
-                bvh_hit hit = bvh_ray(&in->tree[k], from, dv(0, turn, 0), 0, 25);
+                bvh_hit hit = ris__bvh_ray(&in->tree[k], from, dv(0, turn, 0), 0, 25);
                 out->arch_free = fmin(out->arch_free, hit.distance);
             }
     }
@@ -140,7 +140,7 @@ static void measure_condyles(const skull_input *in, skull_report *out)
                 continue;
             low = dv(fmin(low.x, p.x), fmin(low.y, p.y), fmin(low.z, p.z));
             high = dv(fmax(high.x, p.x), fmax(high.y, p.y), fmax(high.z, p.z));
-            out->joint_gap = fmin(out->joint_gap, bvh_closest(&in->tree[0], p).distance);
+            out->joint_gap = fmin(out->joint_gap, ris__bvh_closest(&in->tree[0], p).distance);
         }
         dvec middle = dv_mad(low, 0.5, dv_sub(high, low)), off = dv_sub(middle, in->jaw_point);
         off = dv_mad(off, -dv_dot(off, in->jaw_axis), in->jaw_axis);
@@ -156,7 +156,7 @@ static uint32_t piercing_edges(const tri_mesh *mesh, const bvh *other)
              b = mesh->position[mesh->triangle[i % 3 == 2 ? i - 2 : i + 1]];
         dvec d = dv_sub(b, a);
         if (mesh->triangle[i] < mesh->triangle[i % 3 == 2 ? i - 2 : i + 1])
-            count += bvh_ray(other, a, dv_unit(d), 0, dv_length(d)).found;
+            count += ris__bvh_ray(other, a, dv_unit(d), 0, dv_length(d)).found;
     }
     return count;
 }
@@ -181,7 +181,7 @@ static void measure_roots(const skull_input *in, skull_report *out)
                     n++;
                 }
             dvec root = dv(sum.x / n, sum.y / n + up * 5, sum.z / n);
-            out->roots_bare += !bvh_inside(&in->tree[k], root);
+            out->roots_bare += !ris__bvh_inside(&in->tree[k], root);
         }
     }
 }

@@ -174,7 +174,7 @@ ris_result mesh_half(const solid *s, dvec low, dvec high, double step, tri_mesh 
     free(l.value);
     free(l.edge);
     if (result != RIS_OK)
-        tri_finish(out);
+        ris__tri_finish(out);
     return result;
 }
 
@@ -266,7 +266,7 @@ ris_result mesh_mirror(const tri_mesh *half, tri_mesh *out, ris_error *err)
     out->triangle = malloc((6 * (size_t)half->triangle_count + 1) * sizeof *out->triangle);
     if (!twin || !out->position || !out->triangle) {
         free(twin);
-        tri_finish(out);
+        ris__tri_finish(out);
         return ris_fail(err, RIS_ERROR_MEMORY, "out of memory for %u vertices", 2 * n);
     }
     memcpy(out->position, half->position, n * sizeof *out->position);

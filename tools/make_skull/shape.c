@@ -279,7 +279,7 @@ ris_result depth_grid_build(depth_grid *g, const hull *h, double step, ris_error
         for (int y = 0; y < g->count[1]; y++)
             for (int x = 0; x < g->count[0]; x++)
                 g->value[i++] =
-                    (float)bvh_depth(&h->tree, dv(low.x + x * step, low.y + y * step, low.z + z * step));
+                    (float)ris__bvh_depth(&h->tree, dv(low.x + x * step, low.y + y * step, low.z + z * step));
     float *copy = malloc(total * sizeof *copy);
     if (!copy) {
         depth_grid_finish(g);

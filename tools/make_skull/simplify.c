@@ -188,7 +188,7 @@ static bool turns(const collapser *c, uint32_t v, uint32_t other, dvec p)
         dvec q[3];
         for (int k = 0; k < 3; k++)
             q[k] = t[k] == v ? p : c->mesh->position[t[k]];
-        dvec n = dv_cross(dv_sub(q[1], q[0]), dv_sub(q[2], q[0])), old = tri_normal(c->mesh, triangle);
+        dvec n = dv_cross(dv_sub(q[1], q[0]), dv_sub(q[2], q[0])), old = ris__tri_normal(c->mesh, triangle);
         double longest = 0, area = dv_length(n);
         for (int k = 0; k < 3; k++)
             longest = fmax(longest, dv_length(dv_sub(q[k], q[(k + 1) % 3])));

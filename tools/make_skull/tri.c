@@ -1,56 +1,10 @@
-/* Triangle meshes: OBJ in and out, closedness, symmetry (KA-04). */
+/* Triangle meshes: OBJ out, closedness, symmetry (KA-04). */
 #include "make_skull.h"
 
 #include "base/file.h"
-#include "risorius/head.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-void tri_finish(tri_mesh *mesh)
-{
-    free(mesh->position);
-    free(mesh->triangle);
-    *mesh = (tri_mesh){0};
-}
-
-dvec tri_normal(const tri_mesh *mesh, uint32_t triangle)
-{
-    const uint32_t *t = mesh->triangle + 3 * (size_t)triangle;
-    dvec a = mesh->position[t[0]];
-    return dv_unit(dv_cross(dv_sub(mesh->position[t[1]], a), dv_sub(mesh->position[t[2]], a)));
-}
-
-ris_result tri_load_obj(const char *path, tri_mesh *out, ris_error *err)
-{
-    *out = (tri_mesh){0};
-    ris_mesh mesh;
-    ris_result result = ris_mesh_load_obj(path, &mesh, err);
-    if (result != RIS_OK)
-        return result;
-    uint32_t corners = mesh.face_start[mesh.face_count];
-    out->position = malloc((mesh.vertex_count + 1) * sizeof *out->position);
-    out->triangle = malloc((size_t)corners * 3 * sizeof *out->triangle + 1);
-    if (!out->position || !out->triangle) {
-        tri_finish(out);
-        ris_mesh_finish(&mesh);
-        return ris_fail(err, RIS_ERROR_MEMORY, "%s: out of memory", path);
-    }
-    out->vertex_count = mesh.vertex_count;
-    for (uint32_t i = 0; i < mesh.vertex_count; i++)
-        out->position[i] = dv(mesh.position[i].x, mesh.position[i].y, mesh.position[i].z);
-    for (uint32_t f = 0; f < mesh.face_count; f++) {
-        const uint32_t *v = mesh.face_vertex + mesh.face_start[f];
-        for (uint32_t k = 2; k < mesh.face_start[f + 1] - mesh.face_start[f]; k++) {
-            uint32_t *t = out->triangle + 3 * (size_t)out->triangle_count++;
-            t[0] = v[0];
-            t[1] = v[k - 1];
-            t[2] = v[k];
-        }
-    }
-    ris_mesh_finish(&mesh);
-    return RIS_OK;
-}
 
 ris_result tri_write_obj(const char *path, const char *comment, const tri_mesh *mesh, ris_error *err)
 {

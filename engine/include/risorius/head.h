@@ -87,6 +87,25 @@ typedef struct ris_jaw_def {
     float open_deg, forward_mm, back_mm, side_mm;
 } ris_jaw_def;
 
+typedef enum ris_landmark_mesh {
+    RIS_LANDMARK_SKIN,
+    RIS_LANDMARK_SKULL,
+    RIS_LANDMARK_MANDIBLE
+} ris_landmark_mesh;
+
+/* A named point on a triangle of a mesh (KA-07; landmarks.json). One on bone is paired with the one of its name on
+ * the skin; the dowel goes from it to the skin (KA-74). */
+typedef struct ris_landmark {
+    char name[16]; /* "g", "ch.L": the literature's names */
+    ris_landmark_mesh mesh;
+    uint32_t vertex[3];
+    float weight[3]; /* barycentric */
+    ris_vec3 at;     /* mm, at rest */
+    ris_vec3 dowel;  /* unit, on bone */
+    float depth_mm,
+        table_mm; /* on bone: length of the dowel, and what the table of tissue depths says (0 = no row) */
+} ris_landmark;
+
 typedef enum ris_tissue_model { RIS_TISSUE_RISORIUS, RIS_TISSUE_KAEHLER } ris_tissue_model;
 
 /* Anchor stiffness of one region; later records override earlier ones. Before stiffness_scale. */
@@ -136,8 +155,11 @@ typedef struct ris_head {
     uint32_t region_count;
     ris_region *region;
     char simulated[RIS_NAME_SIZE]; /* region that is simulated (KA-09) */
-    float *depth_mm;               /* skin to bone (skin.vertex_count) */
-    float *jaw_weight;             /* 0 skull .. 1 mandible (skin.vertex_count) */
+    ris_mesh skull, mandible;      /* bones at rest (KA-04); without vertices if the head has none */
+    uint32_t landmark_count;
+    ris_landmark *landmark; /* of the skin, then of the bones (landmark_count) */
+    float *depth_mm;        /* skin to bone (skin.vertex_count) */
+    float *jaw_weight;      /* 0 skull .. 1 mandible (skin.vertex_count) */
     uint32_t muscle_count;
     ris_muscle_def *muscle;
     uint32_t part_count;
@@ -159,6 +181,9 @@ void ris_head_finish(ris_head *head);
 
 /* Region by name, or NULL. */
 const ris_region *ris_head_region(const ris_head *head, const char *name);
+
+/* Landmark by name, on bone or on the skin, or NULL. */
+const ris_landmark *ris_head_landmark(const ris_head *head, const char *name, bool on_bone);
 
 /* Strict OBJ reader (v, vt, f, quads kept). On failure *out is zeroed. */
 ris_result ris_mesh_load_obj(const char *path, ris_mesh *out, ris_error *err);

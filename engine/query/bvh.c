@@ -1,5 +1,5 @@
 /* Exact closest points, rays and inside tests on a triangle mesh, over a tree of boxes. */
-#include "make_skull.h"
+#include "query/query.h"
 
 #include <stdlib.h>
 
@@ -68,14 +68,14 @@ static void split(bvh *tree, uint32_t index)
     split(tree, child + 1);
 }
 
-ris_result bvh_build(bvh *out, const tri_mesh *mesh, ris_error *err)
+ris_result ris__bvh_build(bvh *out, const tri_mesh *mesh, ris_error *err)
 {
     uint32_t n = mesh->triangle_count;
     *out = (bvh){.mesh = mesh};
     out->node = malloc((2 * (size_t)n + 2) * sizeof *out->node);
     out->order = malloc((n + 1) * sizeof *out->order);
     if (!out->node || !out->order) {
-        bvh_finish(out);
+        ris__bvh_finish(out);
         return ris_fail(err, RIS_ERROR_MEMORY, "out of memory for a tree of %u triangles", n);
     }
     for (uint32_t i = 0; i < n; i++)
@@ -87,7 +87,7 @@ ris_result bvh_build(bvh *out, const tri_mesh *mesh, ris_error *err)
     return RIS_OK;
 }
 
-void bvh_finish(bvh *tree)
+void ris__bvh_finish(bvh *tree)
 {
     free(tree->node);
     free(tree->order);
@@ -152,7 +152,7 @@ static void closest_in(const bvh *tree, uint32_t index, dvec p, bvh_hit *best)
     }
 }
 
-bvh_hit bvh_closest(const bvh *tree, dvec p)
+bvh_hit ris__bvh_closest(const bvh *tree, dvec p)
 {
     bvh_hit best = {.distance = HUGE_VAL};
     if (tree->mesh->triangle_count)
@@ -210,7 +210,7 @@ static void ray_in(const bvh *tree, uint32_t index, dvec o, dvec d, dvec inverse
     }
 }
 
-bvh_hit bvh_ray(const bvh *tree, dvec origin, dvec direction, double from, double to)
+bvh_hit ris__bvh_ray(const bvh *tree, dvec origin, dvec direction, double from, double to)
 {
     bvh_hit best = {.distance = to};
     dvec inverse = dv(1 / direction.x, 1 / direction.y, 1 / direction.z);
@@ -219,7 +219,7 @@ bvh_hit bvh_ray(const bvh *tree, dvec origin, dvec direction, double from, doubl
     return best;
 }
 
-bool bvh_inside(const bvh *tree, dvec p)
+bool ris__bvh_inside(const bvh *tree, dvec p)
 {
     static const dvec skew[3] = {
         {0.5773, 0.6211, 0.5301}, {-0.3127, 0.8011, -0.5107}, {0.2111, -0.4433, 0.8713}};
@@ -234,8 +234,8 @@ bool bvh_inside(const bvh *tree, dvec p)
     return votes >= 2;
 }
 
-double bvh_depth(const bvh *tree, dvec p)
+double ris__bvh_depth(const bvh *tree, dvec p)
 {
-    double d = bvh_closest(tree, p).distance;
-    return bvh_inside(tree, p) ? d : -d;
+    double d = ris__bvh_closest(tree, p).distance;
+    return ris__bvh_inside(tree, p) ? d : -d;
 }
