@@ -32,7 +32,9 @@ static const char *expand(const ris_pose_names *names, const char *name, float v
 {
     const ris_head *head = names->model->head;
     ris_pose_names inner = *names;
-    if (add_channel(names->model, name, value, pose)) {
+    char own[RIS_NAME_SIZE];
+    if (add_channel(names->model, name, value, pose) ||
+        (ris__name_of_synonym(name, own) && add_channel(names->model, own, value, pose))) {
         return NULL;
     }
     if (depth == MAX_NESTING) {

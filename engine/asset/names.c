@@ -67,7 +67,7 @@ ris_result ris__read_name(const ris_json_at *at, const char *what, char out[RIS_
     return RIS_OK;
 }
 
-bool ris__scope_has_channel(const ris_scope *scope, const char *name)
+static bool names_channel(const ris_scope *scope, const char *name)
 {
     for (uint32_t i = 0; i < scope->channel_count; i++) {
         if (strcmp(scope->channel[i], name) == 0 || ris__name_is_side_of(scope->channel[i], name)) {
@@ -75,6 +75,12 @@ bool ris__scope_has_channel(const ris_scope *scope, const char *name)
         }
     }
     return false;
+}
+
+bool ris__scope_has_channel(const ris_scope *scope, const char *name)
+{
+    char other[RIS_NAME_SIZE];
+    return names_channel(scope, name) || (ris__name_of_synonym(name, other) && names_channel(scope, other));
 }
 
 const ris_expression *ris__expression_find(const ris_expression *expression, uint32_t count, const char *name)

@@ -12,6 +12,8 @@ bool ris__name_is_anatomical(const char *name);
 bool ris__name_is_sided(const char *name);
 /* True if b is a with the other side, ".L" for ".R" or ".R" for ".L". */
 bool ris__name_is_opposite(const char *a, const char *b);
+/* The name in out that name is a synonym of, side kept ("caninus.L" for levator_anguli_oris.L), or NULL. */
+const char *ris__name_of_synonym(const char *name, char out[RIS_NAME_SIZE]);
 /* True if sided is name followed by ".L" or ".R". */
 bool ris__name_is_side_of(const char *sided, const char *name);
 
@@ -27,7 +29,7 @@ typedef struct ris_scope {
     uint32_t outer_count;
 } ris_scope;
 
-/* True if name is a channel, or the unsided name of one or two. */
+/* True if name is a channel, the unsided name of one or two, or a synonym of such a name. */
 bool ris__scope_has_channel(const ris_scope *scope, const char *name);
 
 /* Reads {name: {channel: value}} into *out (malloc, also on failure: ris__expressions_finish). Refuses names

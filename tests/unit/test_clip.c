@@ -240,6 +240,22 @@ static void test_refuses(void **state)
     }
 }
 
+/* A synonym as target of a track and as term of an expression; an expression may not carry it. */
+static void test_synonyms(void **state)
+{
+    (void)state;
+    ris_clip *clip =
+        clip_of(START "\"expressions\":{\"a\":{\"occipitofrontalis_inner.R\":0.5}},\"tracks\":[" TRACK(
+            "a", "{\"t\":0,\"v\":1}") "," TRACK("occipitofrontalis_inner.L", "{\"t\":0,\"v\":0.25}") "]}");
+    assert_true(sample(clip, 1, FAKE_FRONT_R) == 0.5f);
+    assert_true(sample(clip, 1, FAKE_FRONT_L) == 0.25f);
+    ris_clip_destroy(clip);
+    const char *text = START "\"expressions\":{\"occipitofrontalis_inner\":{}},\"tracks\":[]}";
+    ris_error err = {0};
+    expect_error(&err, ris__clip_parse(&fake_model, "t.json", text, strlen(text), &clip, &err),
+                 RIS_ERROR_DATA, "may not carry the name of a muscle or channel");
+}
+
 static void test_files(void **state)
 {
     (void)state;
@@ -269,6 +285,7 @@ int main(void)
         cmocka_unit_test(test_tracks_add_then_clamp),
         cmocka_unit_test(test_labels),
         cmocka_unit_test(test_refuses),
+        cmocka_unit_test(test_synonyms),
         cmocka_unit_test(test_files),
     };
     return cmocka_run_group_tests(tests, scratch_setup, scratch_teardown);

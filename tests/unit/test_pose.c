@@ -40,6 +40,59 @@ static void test_names(void **state)
     expect_pose("jaw.open=A,jaw.side=E", POSE([FAKE_JAW] = 0.2f, [FAKE_SIDE] = 1));
 }
 
+/* The table of docs/file-formats.md on the reference head: every synonym is the muscle, side by side. */
+static void test_synonyms(void **state)
+{
+    (void)state;
+    static const char *const pairs[][2] = {
+        {"triangularis", "depressor_anguli_oris"},
+        {"triangularis.L", "depressor_anguli_oris.L"},
+        {"quadratus_labii", "depressor_labii_inferioris"},
+        {"quadratus_labii_inferioris.R", "depressor_labii_inferioris.R"},
+        {"levator_labii", "levator_labii_superioris"},
+        {"caninus.R", "levator_anguli_oris.R"},
+        {"compressor_naris", "nasalis"},
+        {"dilatator_naris.L", "nasalis_alaris.L"},
+        {"depressor_septi_nasi", "depressor_septi"},
+        {"occipitofrontalis_inner", "frontalis_inner"},
+        {"occipitofrontalis_outer.L", "frontalis_outer.L"},
+    };
+    ris_model *model = NULL;
+    ris_error err = {0};
+    assert_int_equal(ris_model_load(RIS_SOURCE_DIR "/assets/human", &model, &err), RIS_OK);
+    float *a = calloc(model->channel_count, sizeof *a), *b = calloc(model->channel_count, sizeof *b);
+    for (size_t k = 0; k < sizeof pairs / sizeof *pairs; k++) {
+        char text[2][96];
+        for (int side = 0; side < 2; side++) {
+            snprintf(text[side], sizeof text[side], "%s=0.5", pairs[k][side]);
+            assert_int_equal(ris_pose_parse(model, text[side], side ? b : a, &err), RIS_OK);
+        }
+        assert_memory_equal(a, b, model->channel_count * sizeof *a);
+        float sum = 0;
+        for (uint32_t c = 0; c < model->channel_count; c++) {
+            sum += a[c];
+        }
+        assert_true(sum >= 0.5f);
+    }
+    assert_int_equal(ris_pose_parse(model, "triangulari=1", a, &err), RIS_ERROR_USAGE);
+    assert_int_equal(ris_pose_parse(model, "triangularis.X=1", a, &err), RIS_ERROR_USAGE);
+    free(a);
+    free(b);
+    ris_model_destroy(model);
+}
+
+/* A muscle of the synonym's own name goes first. */
+static void test_own_name_first(void **state)
+{
+    (void)state;
+    static ris_channel channel[] = {{"caninus", 0, 1}, {"levator_anguli_oris", 0, 1}};
+    const ris_model model = {.channel_count = 2, .channel = channel};
+    float pose[2];
+    ris_error err = {0};
+    assert_int_equal(ris_pose_parse(&model, "caninus=1", pose, &err), RIS_OK);
+    assert_true(pose[0] == 1.0f && pose[1] == 0.0f);
+}
+
 static void test_expressions(void **state)
 {
     (void)state;
@@ -119,6 +172,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_names),
+        cmocka_unit_test(test_synonyms),
+        cmocka_unit_test(test_own_name_first),
         cmocka_unit_test(test_expressions),
         cmocka_unit_test(test_adds_then_clamps),
         cmocka_unit_test(test_add_does_not_clamp),
