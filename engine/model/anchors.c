@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define BONE_RAY_MM 15.0 /* bone deeper than this below a vertex is not the one it glides on (errata 28) */
 #define AREA_UNIT_MM2 25.0f
 #define SMOOTHING_PASSES 2
 
@@ -90,6 +91,62 @@ static ris_result fill_default(ris_bake *bake, float *normal, float *tangential,
     return RIS_OK;
 }
 
+/* A bone as triangles; a head made in code has none. */
+typedef struct bone_surface {
+    tri_mesh mesh;
+    bvh tree;
+} bone_surface;
+
+static ris_result open_bone(const ris_mesh *mesh, const char *name, bone_surface *out, ris_error *err)
+{
+    ris_result result = RIS_OK;
+    if (mesh->face_count > 0) {
+        result = ris__tri_from_mesh(mesh, name, &out->mesh, err);
+        if (result == RIS_OK) {
+            result = ris__bvh_build(&out->tree, &out->mesh, err);
+        }
+    }
+    return result;
+}
+
+static void close_bone(bone_surface *bone)
+{
+    ris__bvh_finish(&bone->tree);
+    ris__tri_finish(&bone->mesh);
+}
+
+/* Straight below the vertex if there is bone, else the closest point of the bone. */
+static ris_vec3 point_on_bone(const bone_surface *bone, ris_vec3 x, ris_vec3 normal)
+{
+    const dvec at = dv((double)x.x, (double)x.y, (double)x.z),
+               down = dv_unit(dv(-(double)normal.x, -(double)normal.y, -(double)normal.z));
+    bvh_hit hit = ris__bvh_ray(&bone->tree, at, down, 0.0, BONE_RAY_MM);
+    if (!hit.found) {
+        hit = ris__bvh_closest(&bone->tree, at);
+    }
+    return v3((float)hit.at.x, (float)hit.at.y, (float)hit.at.z);
+}
+
+/* KA-14: the point on skull or mandible under each node; by the tissue depth where the head has no such bone. */
+static ris_result find_bone_anchors(ris_bake *bake, ris_error *err)
+{
+    ris_model *model = bake->model;
+    bone_surface bones[2] = {{{0}, {0}}, {{0}, {0}}};
+    ris_result result = open_bone(&bake->head->skull, "skull", &bones[0], err);
+    if (result == RIS_OK) {
+        result = open_bone(&bake->head->mandible, "mandible", &bones[1], err);
+    }
+    for (uint32_t i = 0; result == RIS_OK && i < model->node_count; ++i) {
+        const bone_surface *bone = &bones[bake->head->jaw_weight[i] > 0.5f];
+        const ris_vec3 x = v4_xyz(model->rest_position[i]), n = v4_xyz(model->rest_normal[i]);
+        model->bone_anchor[i] = bone->mesh.triangle_count > 0 ? point_on_bone(bone, x, n)
+                                                              : v3_mad(x, -bake->head->depth_mm[i], n);
+    }
+    close_bone(&bones[0]);
+    close_bone(&bones[1]);
+    return result;
+}
+
 /* The thesis: a spring pair of one stiffness, on the muscle if one is near, else on the bone. */
 static ris_result fill_kaehler(ris_bake *bake, ris_error *err)
 {
@@ -100,9 +157,7 @@ static ris_result fill_kaehler(ris_bake *bake, ris_error *err)
             continue;
         }
         const bool on_muscle = model->binding_start[i + 1] > model->binding_start[i];
-        const ris_vec3 a = on_muscle
-                               ? model->attach[model->binding[model->binding_start[i]].first_attach].rest
-                               : model->bone_anchor[i];
+        const ris_vec3 a = ris__anchor_at_rest(model, i);
         ris_anchor_param *param = &model->anchor_param[i];
         param->normal = on_muscle ? tissue->muscle_anchor : tissue->bone_anchor;
         param->rest_mm = v3_length(v3_sub(a, v4_xyz(model->rest_position[i])));
@@ -126,16 +181,14 @@ ris_result ris__bake_anchors(ris_bake *bake, ris_error *err)
     if (result == RIS_OK) {
         result = ris__model_alloc(&values, 3 * (size_t)n, sizeof *values, "anchors", err);
     }
-    if (result != RIS_OK) {
-        return result;
+    if (result == RIS_OK) {
+        result = find_bone_anchors(bake, err);
     }
-    for (uint32_t i = 0; i < n; ++i) {
-        model->bone_anchor[i] =
-            v3_mad(v4_xyz(model->rest_position[i]), -bake->head->depth_mm[i], v4_xyz(model->rest_normal[i]));
+    if (result == RIS_OK) {
+        result = bake->head->tissue.model == RIS_TISSUE_KAEHLER
+                     ? fill_kaehler(bake, err)
+                     : fill_default(bake, values, values + n, values + 2 * (size_t)n, err);
     }
-    result = bake->head->tissue.model == RIS_TISSUE_KAEHLER
-                 ? fill_kaehler(bake, err)
-                 : fill_default(bake, values, values + n, values + 2 * (size_t)n, err);
     free(values);
     return result;
 }

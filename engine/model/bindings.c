@@ -14,6 +14,9 @@
 #define FACING_FULL 0.2f /* n_s . n_d from which on the facing rule does not weaken a binding */
 #define ABOVE_FULL 0.6f  /* from -0.5 to 0.5 of this n_s . up a binding goes from none to full */
 
+#define SMALLEST_FACING 1e-3f /* of a vertex that a list binds though it faces away */
+#define TWIN_MM 1e-3f
+
 enum { LIP_UPPER = 1, LIP_LOWER = 2 };
 
 /* Where a node meets a segment's flat sheet. */
@@ -40,9 +43,8 @@ typedef struct binder {
 static touch meet_segment(const binder *b, uint32_t m, uint32_t fiber, uint32_t row, uint32_t node)
 {
     const ris_model *model = b->bake->model;
-    const uint32_t columns = model->muscle[m].def->columns;
-    const float *depth =
-        b->bake->grid_depth + b->bake->grid_first[m] + row * columns + (fiber - model->muscle[m].first_fiber);
+    const uint32_t columns = b->bake->grid[m].columns;
+    const float *depth = b->bake->grid[m].depth + row * columns + (fiber - model->muscle[m].first_fiber);
     const uint32_t point = model->fiber[fiber].first_point + row;
     touch t = {.fiber = fiber, .segment = model->fiber[fiber].first_segment + row};
     const ris_segment *segment = &model->segment[t.segment];
@@ -159,8 +161,10 @@ static ris_result bind_blended(binder *b, uint32_t m, uint32_t node, ris_error *
             keep_nearest(list, &count, meet_segment(b, m, muscle->first_fiber + f, r, node));
         }
     }
+    /* a stored list (KA-44) decides alone who is bound, so that no borderline vertex comes or goes */
+    const bool listed = !muscle->def->attach_auto;
     const float beyond = f_max(list[0].distance - list[0].depth, 0.0f);
-    if (!(beyond < muscle->radius_mm)) {
+    if (!(beyond < muscle->radius_mm) && !listed) {
         return RIS_OK;
     }
     const float limit = BLEND_RATIO * list[0].distance + BLEND_MM;
@@ -178,7 +182,7 @@ static ris_result bind_blended(binder *b, uint32_t m, uint32_t node, ris_error *
         facing += list[k].share * list[k].facing;
         above += list[k].share * list[k].above;
     }
-    const float ratio = beyond / muscle->radius_mm, bell = 1.0f - ratio * ratio;
+    const float ratio = f_min(beyond / muscle->radius_mm, 1.0f), bell = 1.0f - ratio * ratio;
     float weight = bell * bell * f_clamp(facing / FACING_FULL, 0.0f, 1.0f);
     if (muscle->kind == RIS_MUSCLE_LINEAR) {
         float start = muscle->insertion_start;
@@ -186,39 +190,75 @@ static ris_result bind_blended(binder *b, uint32_t m, uint32_t node, ris_error *
         weight *= f_clamp(0.5f + above / ABOVE_FULL, 0.0f, 1.0f);
         weight *= f_smoothstep(muscle->gain * (along - start) / f_max(1.0f - start, 1e-3f));
     }
-    if (!(weight > 1e-4f)) {
+    if (!(weight > 1e-4f) && !listed) {
         return RIS_OK;
     }
     return add_binding(b, m, node, list, kept, weight, along, err);
 }
 
-/* kaehler tissue: the attachment of smallest distance / (n_s . n_d) over all muscles. */
-static ris_result bind_nearest(binder *b, uint32_t node, ris_error *err)
+/* Smallest distance / (n_s . n_d) of a node to a muscle; INFINITY if it may not be bound to it. */
+static float nearest_touch(const binder *b, uint32_t m, uint32_t node, touch *out)
 {
-    const ris_model *model = b->bake->model;
+    const ris_muscle *muscle = &b->bake->model->muscle[m];
     const float radius = b->bake->head->tissue.muscle_radius_mm;
+    const bool listed = !muscle->def->attach_auto;
     float best = INFINITY;
-    uint32_t best_muscle = 0;
-    touch nearest = {0};
-    for (uint32_t m = 0; m < model->muscle_count; ++m) {
-        const ris_muscle *muscle = &model->muscle[m];
-        if (!may_bind(b, m, node)) {
-            continue;
-        }
-        for (uint32_t f = 0; f < muscle->fiber_count; ++f) {
-            for (uint32_t r = 0; r + 1 < muscle->point_count; ++r) {
-                touch t = meet_segment(b, m, muscle->first_fiber + f, r, node);
-                if (t.facing > 0.0f && t.distance <= radius && t.distance / t.facing < best) {
-                    best = t.distance / t.facing;
-                    best_muscle = m;
-                    nearest = t;
-                }
+    for (uint32_t f = 0; f < muscle->fiber_count; ++f) {
+        for (uint32_t r = 0; r + 1 < muscle->point_count; ++r) {
+            const touch t = meet_segment(b, m, muscle->first_fiber + f, r, node);
+            const float facing = listed ? f_max(t.facing, SMALLEST_FACING) : t.facing;
+            if (facing > 0.0f && (listed || t.distance <= radius) && t.distance / facing < best) {
+                best = t.distance / facing;
+                *out = t;
             }
         }
     }
-    nearest.share = 1.0f;
-    return best < INFINITY ? add_binding(b, best_muscle, node, &nearest, 1, 1.0f, nearest.along, err)
-                           : RIS_OK;
+    return best;
+}
+
+/* kaehler tissue: the attachment of smallest distance / (n_s . n_d) over all muscles. A node of the midline that two twins
+ * reach equally hangs on both, or the face would not be its own mirror image. */
+static ris_result bind_nearest(binder *b, uint32_t node, ris_error *err)
+{
+    const ris_model *model = b->bake->model;
+    float best = INFINITY, second = INFINITY;
+    uint32_t best_muscle = 0;
+    touch nearest[2] = {{0}};
+    for (uint32_t m = 0; m < model->muscle_count; ++m) {
+        touch t = {0};
+        const float d = may_bind(b, m, node) ? nearest_touch(b, m, node, &t) : INFINITY;
+        if (d < best) {
+            second = best;
+            nearest[1] = nearest[0];
+            best = d;
+            nearest[0] = t;
+            best_muscle = m;
+        } else if (d < second) {
+            second = d;
+            nearest[1] = t;
+        }
+    }
+    if (!(best < INFINITY)) {
+        return RIS_OK;
+    }
+    const bool both = second - best < TWIN_MM && fabsf(model->rest_position[node].x) < TWIN_MM;
+    nearest[0].share = both ? 0.5f : 1.0f;
+    nearest[1].share = 0.5f;
+    return add_binding(b, best_muscle, node, nearest, both ? 2 : 1, 1.0f, nearest[0].along, err);
+}
+
+ris_vec3 ris__anchor_at_rest(const ris_model *model, uint32_t node)
+{
+    ris_vec3 a = {0};
+    if (model->binding_start[node + 1] == model->binding_start[node]) {
+        return model->bone_anchor[node];
+    }
+    const ris_binding *binding = &model->binding[model->binding_start[node]];
+    for (uint32_t k = 0; k < binding->attach_count; ++k) {
+        const ris_attach *attach = &model->attach[binding->first_attach + k];
+        a = v3_mad(a, attach->share, attach->rest);
+    }
+    return a;
 }
 
 static uint32_t nearest_node(const ris_model *model, ris_vec3 p)

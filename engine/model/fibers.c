@@ -35,44 +35,56 @@ ris_vec3 ris__muscle_point(const ris_model *model, const ris_muscle *muscle, con
     return v3_scale(sum, 1.0f / (float)muscle->fiber_count);
 }
 
-/* KA-41: majority of the rows whose nearest vertices hang mostly on the jaw. */
-static bool votes_for_jaw(const ris_bake *bake, const ris_muscle_def *def)
+/* KA-41: a ray outward through the skin from each point of a row; the closest vertex of the triangle it meets hangs on
+ * the jaw or not. */
+static bool hangs_on_jaw(const ris_bake *bake, ris_vec3 p, ris_vec3 normal)
+{
+    uint32_t triangle = 0;
+    if (!(fabsf(ris__depth_along(bake, p, normal, &triangle)) < INFINITY)) {
+        const dvec at = dv((double)p.x, (double)p.y, (double)p.z);
+        triangle = ris__bvh_closest(&bake->skin_tree, at).triangle;
+    }
+    const uint32_t *v = bake->model->triangle + 3 * (size_t)triangle;
+    uint32_t nearest = v[0];
+    for (int k = 1; k < 3; ++k) {
+        if (v3_distance(bake->head->skin.position[v[k]], p) <
+            v3_distance(bake->head->skin.position[nearest], p)) {
+            nearest = v[k];
+        }
+    }
+    return bake->head->jaw_weight[nearest] > 0.5f;
+}
+
+/* Majority of the points in a row, then of the rows. */
+static bool votes_for_jaw(const ris_bake *bake, const ris_bake_grid *grid)
 {
     uint32_t rows_on_jaw = 0;
-    for (uint32_t r = 0; r < def->rows; ++r) {
+    for (uint32_t r = 0; r < grid->rows; ++r) {
         uint32_t on_jaw = 0;
-        for (uint32_t c = 0; c < def->columns; ++c) {
-            float best = INFINITY;
-            uint32_t nearest = 0;
-            for (uint32_t i = 0; i < bake->model->node_count; ++i) {
-                ris_vec3 d = v3_sub(bake->head->skin.position[i], def->grid[r * def->columns + c]);
-                if (v3_dot(d, d) < best) {
-                    best = v3_dot(d, d);
-                    nearest = i;
-                }
-            }
-            on_jaw += bake->head->jaw_weight[nearest] > 0.5f;
+        for (uint32_t c = 0; c < grid->columns; ++c) {
+            const uint32_t k = r * grid->columns + c;
+            on_jaw += hangs_on_jaw(bake, grid->point[k], grid->normal[k]);
         }
-        rows_on_jaw += 2 * on_jaw > def->columns;
+        rows_on_jaw += 2 * on_jaw > grid->columns;
     }
-    return 2 * rows_on_jaw > def->rows;
+    return 2 * rows_on_jaw > grid->rows;
 }
 
 static ris_result make_segment(ris_bake *bake, uint32_t m, uint32_t fiber, uint32_t row, ris_segment *out,
                                ris_error *err)
 {
-    const ris_muscle_def *def = &bake->head->muscle[m];
+    const ris_bake_grid *grid = &bake->grid[m];
     const ris_model *model = bake->model;
     const uint32_t local_fiber = fiber - model->muscle[m].first_fiber;
     const ris_vec3 *p = model->fiber_point + model->fiber[fiber].first_point + row;
-    const uint32_t a = bake->grid_first[m] + row * def->columns + local_fiber, b = a + def->columns;
-    ris_vec3 up = v3_add(v3_add(bake->grid_normal[a], bake->grid_normal[a + 1]),
-                         v3_add(bake->grid_normal[b], bake->grid_normal[b + 1]));
+    const uint32_t a = row * grid->columns + local_fiber, b = a + grid->columns;
+    ris_vec3 up =
+        v3_add(v3_add(grid->normal[a], grid->normal[a + 1]), v3_add(grid->normal[b], grid->normal[b + 1]));
     out->origin = v3_scale(v3_add(p[0], p[1]), 0.5f);
     out->size.x = v3_distance(p[1], p[0]);
-    out->size.y = (def->thickness_mm[0] + def->thickness_mm[1]) / 2.0f;
-    out->size.z = 0.5f * (v3_distance(bake->grid_point[a + 1], bake->grid_point[a]) +
-                          v3_distance(bake->grid_point[b + 1], bake->grid_point[b]));
+    out->size.y = grid->thickness[row * (grid->columns - 1) + local_fiber];
+    out->size.z = 0.5f * (v3_distance(grid->point[a + 1], grid->point[a]) +
+                          v3_distance(grid->point[b + 1], grid->point[b]));
     const ris_vec3 none = {0};
     out->along = v3_unit_or(v3_sub(p[1], p[0]), none);
     out->wide = v3_unit_or(v3_cross(out->along, up), none);
@@ -80,7 +92,7 @@ static ris_result make_segment(ris_bake *bake, uint32_t m, uint32_t fiber, uint3
     if (!(out->size.x > 1e-3f) || !(out->size.z > 1e-3f) || !(v3_dot(out->wide, out->wide) > 0.5f)) {
         return ris_fail(err, RIS_ERROR_DATA,
                         "muscle %s: the cell at row %u, column %u of its grid is flat or turned on edge",
-                        def->name, row, local_fiber);
+                        bake->head->muscle[m].name, row, local_fiber);
     }
     return RIS_OK;
 }
@@ -89,12 +101,13 @@ static ris_result make_muscle(ris_bake *bake, uint32_t m, ris_error *err)
 {
     ris_model *model = bake->model;
     const ris_muscle_def *def = &bake->head->muscle[m];
+    const ris_bake_grid *grid = &bake->grid[m];
     ris_muscle *muscle = &model->muscle[m];
     memcpy(muscle->name, def->name, sizeof muscle->name);
     muscle->kind = def->kind;
-    muscle->on_jaw = def->bone == RIS_BONE_JAW || (def->bone == RIS_BONE_AUTO && votes_for_jaw(bake, def));
-    muscle->fiber_count = def->columns - 1;
-    muscle->point_count = def->rows;
+    muscle->on_jaw = def->bone == RIS_BONE_JAW || (def->bone == RIS_BONE_AUTO && votes_for_jaw(bake, grid));
+    muscle->fiber_count = grid->columns - 1;
+    muscle->point_count = grid->rows;
     muscle->first_fiber = model->fiber_count;
     muscle->max_shortening = def->max_shortening;
     muscle->insertion_start = def->insertion_start;
@@ -108,11 +121,11 @@ static ris_result make_muscle(ris_bake *bake, uint32_t m, ris_error *err)
         ris_fiber *fiber = &model->fiber[model->fiber_count];
         fiber->first_point = model->fiber_point_count;
         fiber->first_segment = model->segment_count;
-        for (uint32_t r = 0; r < def->rows; ++r) {
-            const ris_vec3 *grid = bake->grid_point + bake->grid_first[m] + r * def->columns + f;
-            model->fiber_point[model->fiber_point_count++] = v3_scale(v3_add(grid[0], grid[1]), 0.5f);
+        for (uint32_t r = 0; r < grid->rows; ++r) {
+            const ris_vec3 *p = grid->point + r * grid->columns + f;
+            model->fiber_point[model->fiber_point_count++] = v3_scale(v3_add(p[0], p[1]), 0.5f);
         }
-        for (uint32_t r = 0; r + 1 < def->rows; ++r) {
+        for (uint32_t r = 0; r + 1 < grid->rows; ++r) {
             ris_result result =
                 make_segment(bake, m, model->fiber_count, r, &model->segment[model->segment_count], err);
             if (result != RIS_OK) {
@@ -131,8 +144,8 @@ ris_result ris__bake_muscles(ris_bake *bake, ris_error *err)
     const ris_head *head = bake->head;
     size_t fibers = 0, points = 0;
     for (uint32_t m = 0; m < head->muscle_count; ++m) {
-        fibers += head->muscle[m].columns - 1;
-        points += (size_t)(head->muscle[m].columns - 1) * head->muscle[m].rows;
+        fibers += bake->grid[m].columns - 1;
+        points += (size_t)(bake->grid[m].columns - 1) * bake->grid[m].rows;
     }
     ris_result result =
         ris__model_alloc(&model->muscle, head->muscle_count, sizeof *model->muscle, "muscles", err);

@@ -20,15 +20,17 @@ static bool is_end(const ris_muscle *muscle, uint32_t point)
     return point + 1 == muscle->point_count || (muscle->kind == RIS_MUSCLE_SPHINCTER && point == 0);
 }
 
-/* Half extent across the fibres at a point. */
-static float half_extent(const ris_model *model, const ris_muscle *muscle, uint32_t point)
+/* Half extent across the fibres at an end, from the author's grid: refinement must not change who joins whom. */
+static float half_extent(const ris_muscle *muscle, uint32_t point)
 {
-    uint32_t row = point + 1 < muscle->point_count ? point : point - 1;
+    const ris_muscle_def *def = muscle->def;
+    const ris_vec3 *row = def->grid + (point == 0 ? 0 : (def->rows - 2) * def->columns);
     float width = 0.0f;
-    for (uint32_t f = 0; f < muscle->fiber_count; ++f) {
-        width += model->segment[model->fiber[muscle->first_fiber + f].first_segment + row].size.z;
+    for (uint32_t c = 0; c + 1 < def->columns; ++c) {
+        const ris_vec3 *next = row + def->columns;
+        width += 0.5f * (v3_distance(row[c + 1], row[c]) + v3_distance(next[c + 1], next[c]));
     }
-    return 0.5f * f_max(width, model->segment[model->fiber[muscle->first_fiber].first_segment + row].size.y);
+    return 0.5f * f_max(width, 0.5f * (def->thickness_mm[0] + def->thickness_mm[1]));
 }
 
 static uint32_t root_of(const uint32_t *parent, uint32_t k)
@@ -74,15 +76,14 @@ static void join(const ris_model *model, const end_point *list, uint32_t count, 
         }
         const ris_muscle *ma = &model->muscle[list[a].muscle];
         const ris_vec3 pa = ris__muscle_point(model, ma, model->fiber_point, list[a].point);
-        const float reach = half_extent(model, ma, list[a].point) + REACH_MM;
+        const float reach = half_extent(ma, list[a].point) + REACH_MM;
         for (uint32_t b = 0; b < count;) {
             uint32_t muscle = list[b].muscle, closest = UINT32_MAX;
             float best = INFINITY;
             for (; b < count && list[b].muscle == muscle; ++b) {
                 const ris_muscle *mb = &model->muscle[muscle];
                 float d = v3_distance(pa, ris__muscle_point(model, mb, model->fiber_point, list[b].point));
-                if (muscle != list[a].muscle && d < reach + half_extent(model, mb, list[b].point) &&
-                    d < best) {
+                if (muscle != list[a].muscle && d < reach + half_extent(mb, list[b].point) && d < best) {
                     best = d;
                     closest = b;
                 }

@@ -1,5 +1,6 @@
 /* Bake of a head into a flat const model: the order of the builders, and its end. KA-01, KA-09, KA-48. */
 #include "asset/channel.h"
+#include "base/clock.h"
 #include "model_impl.h"
 
 #include <stdio.h>
@@ -31,10 +32,12 @@ static void bake_finish(ris_bake *bake)
     free(bake->triangle_area);
     free(bake->moving);
     free(bake->muscle_weight);
-    free(bake->grid_point);
-    free(bake->grid_normal);
-    free(bake->grid_depth);
-    free(bake->grid_first);
+    for (uint32_t m = 0; bake->grid && m < bake->head->muscle_count; ++m) {
+        ris__grid_finish(&bake->grid[m]);
+    }
+    free(bake->grid);
+    ris__bvh_finish(&bake->skin_tree);
+    ris__tri_finish(&bake->skin);
 }
 
 /* What the parser cannot know: arrays that a head made in code may have left out. */
@@ -63,10 +66,14 @@ static ris_result check_head(const ris_head *head, ris_error *err)
 
 ris_result ris_model_create(const ris_head *head, ris_model **out, ris_error *err)
 {
-    static ris_result (*const builders[])(ris_bake *, ris_error *) = {
-        ris__bake_triangles, ris__bake_mass,   ris__bake_springs,  ris__bake_grids,
-        ris__bake_muscles,   ris__bake_groups, ris__bake_bindings, ris__bake_anchors,
-        ris__bake_lids,      ris__bake_push,   ris__bake_channels,
+    static const struct {
+        ris_result (*build)(ris_bake *, ris_error *);
+        bool muscles; /* part of rebuilding all muscles after an edit (KA-43) */
+    } builders[] = {
+        {ris__bake_triangles, false}, {ris__bake_mass, false},     {ris__bake_springs, false},
+        {ris__bake_grids, true},      {ris__bake_muscles, true},   {ris__bake_groups, true},
+        {ris__bake_bindings, true},   {ris__bake_anchors, false},  {ris__bake_lids, false},
+        {ris__bake_push, false},      {ris__bake_channels, false},
     };
     *out = NULL;
     ris_result result = check_head(head, err);
@@ -83,7 +90,11 @@ ris_result ris_model_create(const ris_head *head, ris_model **out, ris_error *er
     bake.model->node_count = head->skin.vertex_count;
     bake.model->jaw_weight = head->jaw_weight;
     for (size_t k = 0; k < sizeof builders / sizeof builders[0] && result == RIS_OK; ++k) {
-        result = builders[k](&bake, err);
+        const uint64_t start = ris__clock_ns();
+        result = builders[k].build(&bake, err);
+        const double ms = ris__clock_ms(start, ris__clock_ns());
+        bake.model->bake_ms += ms;
+        bake.model->muscle_bake_ms += builders[k].muscles ? ms : 0.0;
     }
     bake_finish(&bake);
     if (result != RIS_OK) {

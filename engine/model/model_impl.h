@@ -2,9 +2,19 @@
  * wrong with the head. */
 #pragma once
 
+#include "query/query.h"
 #include "risorius/model.h"
 
 #define RIS_GROUP_MAX 256 /* muscle points in one constraint group */
+
+/* The grid of a muscle below the skin, refined: rows run along the fibres, row 0 is the fixed end. */
+typedef struct ris_bake_grid {
+    uint32_t rows, columns;
+    ris_vec3 *point, *normal; /* normal outwards, unit (rows x columns) */
+    float *depth;             /* below the skin, mm (rows x columns) */
+    bool *deep;               /* the author drew it below the muscle layer (rows x columns) */
+    float *thickness;         /* of each cell, mm ((rows - 1) x (columns - 1)) */
+} ris_bake_grid;
 
 /* Head as parsed plus what only the bake needs. */
 typedef struct ris_bake {
@@ -14,10 +24,9 @@ typedef struct ris_bake {
     float *triangle_area;    /* mm^2 (triangle_count) */
     bool *moving;            /* in the simulated region (node_count) */
     float *muscle_weight;    /* largest binding weight, 0..1 (node_count) */
-    ris_vec3 *grid_point;    /* grids projected and sunk below the skin (sum of rows x columns) */
-    ris_vec3 *grid_normal;
-    float *grid_depth;    /* below the skin, mm */
-    uint32_t *grid_first; /* first grid point of each muscle (muscle_count + 1) */
+    ris_bake_grid *grid;     /* (muscle_count) */
+    tri_mesh skin;           /* the model's triangles, and boxes over them */
+    bvh skin_tree;
 } ris_bake;
 
 /* calloc of count x size that reports what it was for; count 0 gives a valid pointer. */
@@ -29,13 +38,30 @@ ris_result ris__bake_triangles(ris_bake *bake, ris_error *err);
 ris_result ris__bake_mass(ris_bake *bake, ris_error *err);
 /* KA-10, KA-11 and the bending umbrella: spring_start, half_spring. */
 ris_result ris__bake_springs(ris_bake *bake, ris_error *err);
-/* KA-38, KA-40: grids below the skin; KA-23, 24, 41: fibres and segments. */
+/* KA-38, KA-39: grids below the skin, refined. */
 ris_result ris__bake_grids(ris_bake *bake, ris_error *err);
+/* One grid of rows x columns without content. */
+ris_result ris__grid_create(uint32_t rows, uint32_t columns, ris_bake_grid *out, ris_error *err);
+void ris__grid_finish(ris_bake_grid *grid);
+/* Normals of the grid points from the cells around them, outward as the skin near by. */
+void ris__grid_normals(const ris_bake *bake, const ris_vec3 *point, uint32_t rows, uint32_t columns,
+                       ris_vec3 *normal);
+/* Nearest skin point whose triangle faces along normal; false if none is within 40 mm. */
+bool ris__project_on_skin(const ris_bake *bake, ris_vec3 p, ris_vec3 normal, ris_vec3 *out);
+/* Distance from p to the skin that faces along unit normal, on the ray both ways: positive below the skin, negative
+ * above. NAN if there is none within 40 mm. triangle may be NULL. */
+float ris__depth_along(const ris_bake *bake, ris_vec3 p, ris_vec3 normal, uint32_t *triangle);
+/* KA-39: splits rows and columns of the sunken grid of muscle m until it keeps the muscle layer, then sets the thickness
+ * of its cells. */
+ris_result ris__refine_grid(const ris_bake *bake, uint32_t m, ris_bake_grid *grid, ris_error *err);
+/* KA-23, 24, 40, 41: fibres and segments. */
 ris_result ris__bake_muscles(ris_bake *bake, ris_error *err);
 /* KA-28: constraint groups of muscle ends. */
 ris_result ris__bake_groups(ris_bake *bake, ris_error *err);
 /* KA-42: which nodes a muscle moves, and how much. */
 ris_result ris__bake_bindings(ris_bake *bake, ris_error *err);
+/* kaehler tissue: the point on its muscle or its bone that a node hangs on, at rest. */
+ris_vec3 ris__anchor_at_rest(const ris_model *model, uint32_t node);
 /* KA-14, KA-15 and the anchors of the default tissue: bone_anchor, anchor_param. */
 ris_result ris__bake_anchors(ris_bake *bake, ris_error *err);
 /* Nodes of the eyelids with their weights and closing angles; thinner, firmly held skin there. */

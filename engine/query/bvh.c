@@ -129,7 +129,13 @@ static double box_distance2(const bvh_node *node, dvec p)
     return sum;
 }
 
-static void closest_in(const bvh *tree, uint32_t index, dvec p, bvh_hit *best)
+/* What ris__bvh_closest_facing asks for; cosine -2 takes every triangle. */
+typedef struct facing_filter {
+    dvec normal;
+    double cosine;
+} facing_filter;
+
+static void closest_in(const bvh *tree, uint32_t index, dvec p, const facing_filter *filter, bvh_hit *best)
 {
     const bvh_node *node = &tree->node[index];
     if (node->count == 0) {
@@ -137,9 +143,9 @@ static void closest_in(const bvh *tree, uint32_t index, dvec p, bvh_hit *best)
         double d1 = box_distance2(node + (node->first + 1 - index), p);
         uint32_t near = d0 <= d1 ? 0 : 1;
         if ((near ? d1 : d0) < best->distance)
-            closest_in(tree, node->first + near, p, best);
+            closest_in(tree, node->first + near, p, filter, best);
         if ((near ? d0 : d1) < best->distance)
-            closest_in(tree, node->first + 1 - near, p, best);
+            closest_in(tree, node->first + 1 - near, p, filter, best);
         return;
     }
     for (uint32_t i = node->first; i < node->first + node->count; i++) {
@@ -147,18 +153,25 @@ static void closest_in(const bvh *tree, uint32_t index, dvec p, bvh_hit *best)
         const dvec *v = tree->mesh->position;
         dvec q = closest_on_triangle(p, v[t[0]], v[t[1]], v[t[2]]);
         double d = dv_dot(dv_sub(p, q), dv_sub(p, q));
-        if (d < best->distance)
+        if (d < best->distance &&
+            dv_dot(ris__tri_normal(tree->mesh, tree->order[i]), filter->normal) >= filter->cosine)
             *best = (bvh_hit){true, tree->order[i], d, q};
     }
 }
 
-bvh_hit ris__bvh_closest(const bvh *tree, dvec p)
+bvh_hit ris__bvh_closest_facing(const bvh *tree, dvec p, dvec normal, double cosine, double within)
 {
-    bvh_hit best = {.distance = HUGE_VAL};
+    const facing_filter filter = {normal, cosine};
+    bvh_hit best = {.distance = within * within};
     if (tree->mesh->triangle_count)
-        closest_in(tree, 0, p, &best);
+        closest_in(tree, 0, p, &filter, &best);
     best.distance = sqrt(best.distance);
     return best;
+}
+
+bvh_hit ris__bvh_closest(const bvh *tree, dvec p)
+{
+    return ris__bvh_closest_facing(tree, p, dv(0, 0, 0), -2, HUGE_VAL);
 }
 
 static bool ray_meets_box(const bvh_node *node, dvec origin, dvec inverse, double from, double to)

@@ -80,6 +80,8 @@ typedef struct bvh_hit {
 ris_result ris__bvh_build(bvh *out, const tri_mesh *mesh, ris_error *err);
 void ris__bvh_finish(bvh *tree);
 bvh_hit ris__bvh_closest(const bvh *tree, dvec p);
+/* The same among triangles whose normal has at least this cosine with unit normal, nearer than within. */
+bvh_hit ris__bvh_closest_facing(const bvh *tree, dvec p, dvec normal, double cosine, double within);
 /* First hit of the ray with distance in (from, to). direction is unit. */
 bvh_hit ris__bvh_ray(const bvh *tree, dvec origin, dvec direction, double from, double to);
 /* Parity of a skew ray decides, three rays vote. mesh must be closed. */

@@ -80,15 +80,17 @@ static void attach_default(ris_rig *rig, uint32_t i)
 static void attach_kaehler(ris_rig *rig, uint32_t i)
 {
     const ris_model *model = rig->model;
-    const ris_vec3 x = v4_xyz(model->rest_position[i]);
-    ris_vec3 a = model->bone_anchor[i], mirror;
+    const ris_vec3 x = v4_xyz(model->rest_position[i]), rest = ris__anchor_at_rest(model, i);
+    ris_vec3 a = rest, mirror = v3_sub(v3_scale(x, 2.0f), rest);
     if (model->binding_start[i + 1] > model->binding_start[i]) {
         const ris_binding *binding = &model->binding[model->binding_start[i]];
-        const ris_attach *attach = &model->attach[binding->first_attach];
-        a = attached_point(rig, &model->muscle[binding->muscle], attach);
-        mirror = v3_add(v3_sub(v3_scale(x, 2.0f), attach->rest), v3_sub(a, attach->rest));
+        a = v3(0.0f, 0.0f, 0.0f);
+        for (uint32_t k = 0; k < binding->attach_count; ++k) {
+            const ris_attach *attach = &model->attach[binding->first_attach + k];
+            a = v3_mad(a, attach->share, attached_point(rig, &model->muscle[binding->muscle], attach));
+        }
+        mirror = v3_add(mirror, v3_sub(a, rest));
     } else {
-        mirror = v3_sub(v3_scale(x, 2.0f), a);
         if (model->jaw_weight[i] > 0.5f) {
             a = ris__rigid_apply(&rig->jaw, a);
             mirror = ris__rigid_apply(&rig->jaw, mirror);

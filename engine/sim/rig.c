@@ -87,9 +87,7 @@ void ris__rig_reset(ris_rig *rig)
         rig->point[i].a = v4_from(x, 0.0f);
         rig->point[i].b = model->rest_normal[i];
         if (kaehler) {
-            ris_vec3 a = model->binding_start[i + 1] > model->binding_start[i]
-                             ? model->attach[model->binding[model->binding_start[i]].first_attach].rest
-                             : model->bone_anchor[i];
+            const ris_vec3 a = ris__anchor_at_rest(model, i);
             rig->target[i] = a;
             rig->point[i].a = v4_from(a, 0.0f);
             rig->point[i].b = v4_from(v3_sub(v3_scale(x, 2.0f), a), 0.0f);

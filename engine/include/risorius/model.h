@@ -124,8 +124,10 @@ typedef struct ris_model {
     uint32_t lid_count; /* 0 without eyes, lids or in the kaehler tissue */
     ris_lid_node *lid;  /* ascending node (lid_count) */
     ris_lid_eye lid_eye[2];
-    ris_vec3 *bone_anchor;   /* point on the bone below the node at rest, mm (node_count) */
+    ris_vec3 *bone_anchor;   /* KA-14: point on the bone below the node at rest, mm (node_count) */
     const float *jaw_weight; /* (node_count) */
+
+    double bake_ms, muscle_bake_ms; /* what ris_model_create took, and its part from muscle grids to bindings */
 } ris_model;
 
 /* Bakes a head; head must outlive the model. Errors: RIS_ERROR_DATA with what is wrong (unstable dt, node
