@@ -127,7 +127,8 @@ typedef struct ris_model {
     ris_vec3 *bone_anchor;   /* KA-14: point on the bone below the node at rest, mm (node_count) */
     const float *jaw_weight; /* (node_count) */
 
-    double bake_ms, muscle_bake_ms; /* what ris_model_create took, and its part from muscle grids to bindings */
+    double bake_ms,
+        muscle_bake_ms; /* what ris_model_create took, and its part from muscle grids to bindings */
 } ris_model;
 
 /* Bakes a head; head must outlive the model. Errors: RIS_ERROR_DATA with what is wrong (unstable dt, node
