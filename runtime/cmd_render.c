@@ -1,5 +1,6 @@
 /* risorius render HEAD: plays a clip or holds a pose and writes a video, pictures, a vertex cache or a contact sheet. */
 #include "base/clock.h"
+#include "layers.h"
 #include "player.h"
 #include "render_out.h"
 #include "sheet.h"
@@ -12,7 +13,7 @@
 #define POSE_SECONDS 2.0 /* length of a video or cache of a held pose */
 
 typedef struct render_args {
-    const char *head, *clip, *pose, *at, *size, *fps_text, *view, *contact;
+    const char *head, *clip, *pose, *at, *size, *fps_text, *view, *contact, *layers;
     cli_list out;
     bool wireframe;
 } render_args;
@@ -23,6 +24,7 @@ typedef struct render_job {
     uint32_t width, height, fps; /* size of one view */
     double at_s;                 /* < 0: the whole clip */
     studio_views views;
+    studio_look look;
     render_out out[CLI_LIST_SIZE];
     bool draws;   /* some output is a picture */
     bool settles; /* pictures of a pose that is held until it rests */
@@ -103,6 +105,10 @@ static ris_result check_args(render_job *render, ris_error *err)
     if (!r) {
         r = studio_views_parse(args->view ? args->view : "front", &render->views, err);
     }
+    render->look.wireframe = args->wireframe;
+    if (!r && args->layers) {
+        r = layers_parse(args->layers, &render->look.layers, err);
+    }
     render->at_s = -1;
     if (!r && args->at) {
         r = cli_number("at", args->at, 0, 86400, &render->at_s, err);
@@ -154,11 +160,11 @@ static ris_result open_render(render_job *render, const ris_cli *cli, ris_error 
         fprintf(stderr, "device: %s\n", ris_sim_backend(render->backend.sim));
     }
     if (!r && render->draws) {
-        r = studio_create(&render->backend, &render->views, render->width, render->height, args->wireframe,
+        r = studio_create(&render->backend, &render->views, render->width, render->height, &render->look,
                           &render->studio, err);
     }
     if (!r && args->contact) {
-        r = sheet_init(&render->sheet, args->contact, &render->backend, render->clip, err);
+        r = sheet_init(&render->sheet, args->contact, &render->backend, render->clip, &render->look, err);
     }
     for (uint32_t i = 0; !r && i < args->out.count; i++) {
         r = render_out_open(&render->out[i], render->width * render->views.count, render->height, render->fps,
@@ -297,6 +303,7 @@ static ris_result run(ris_cli *cli, int argc, char **argv, ris_error *err)
         {"fps", 0, "N", "frames a second (60); the simulation ticks at 60 whatever it is", NULL,
          &args.fps_text, NULL},
         {"view", 0, "LIST", "front, 34, profile; several stand side by side (front)", NULL, &args.view, NULL},
+        {"layers", 0, "LIST", LAYER_NAMES " (skin)", NULL, &args.layers, NULL},
         {"wireframe", 'w', NULL, "draw edges", &args.wireframe, NULL, NULL},
         {0},
     };

@@ -34,7 +34,7 @@ static ris_result collect(ris_sheet *sheet, const ris_clip *clip, ris_error *err
 }
 
 ris_result sheet_init(ris_sheet *out, const char *path, const ris_backend *backend, const ris_clip *clip,
-                      ris_error *err)
+                      const studio_look *look, ris_error *err)
 {
     *out = (ris_sheet){.path = path};
     ris_result r = collect(out, clip, err);
@@ -48,7 +48,7 @@ ris_result sheet_init(ris_sheet *out, const char *path, const ris_backend *backe
     studio_views views;
     r = studio_views_parse("front,34", &views, err);
     if (!r) {
-        r = studio_create(backend, &views, CELL_WIDTH, CELL_HEIGHT, false, &out->studio, err);
+        r = studio_create(backend, &views, CELL_WIDTH, CELL_HEIGHT, look, &out->studio, err);
     }
     if (r) {
         goto fail;

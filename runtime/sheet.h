@@ -18,7 +18,7 @@ typedef struct ris_sheet {
 
 /* Collects the labels of the clip, of a run of the same label the last. */
 ris_result sheet_init(ris_sheet *out, const char *path, const ris_backend *backend, const ris_clip *clip,
-                      ris_error *err);
+                      const studio_look *look, ris_error *err);
 void sheet_finish(ris_sheet *sheet);
 /* Takes the poses up to time_s, moving the player there. */
 ris_result sheet_take(ris_sheet *sheet, ris_player *player, double time_s, ris_error *err);

@@ -40,7 +40,7 @@ struct ris_studio {
 };
 
 ris_result studio_create(const ris_backend *backend, const studio_views *views, uint32_t width,
-                         uint32_t height, bool wireframe, ris_studio **out, ris_error *err)
+                         uint32_t height, const studio_look *look, ris_studio **out, ris_error *err)
 {
     *out = NULL;
     ris_studio *s = calloc(1, sizeof *s);
@@ -65,9 +65,9 @@ ris_result studio_create(const ris_backend *backend, const studio_views *views, 
                      height);
         goto fail;
     }
-    r = ris_draw_create(backend->device, backend->model,
-                        &(ris_draw_def){.width = width, .height = height, .wireframe = wireframe}, &s->draw,
-                        err);
+    const ris_draw_def def = {
+        .width = width, .height = height, .wireframe = look->wireframe, .layers = look->layers};
+    r = ris_draw_create(backend->device, backend->model, &def, &s->draw, err);
     if (r) {
         goto fail;
     }
@@ -114,9 +114,9 @@ ris_result studio_shoot(ris_studio *studio, ris_sim *sim, const ris_vec4 *positi
 #else
 /* Without Vulkan nothing draws: backend_open has refused before a studio is asked for. */
 ris_result studio_create(const ris_backend *backend, const studio_views *views, uint32_t width,
-                         uint32_t height, bool wireframe, ris_studio **out, ris_error *err)
+                         uint32_t height, const studio_look *look, ris_studio **out, ris_error *err)
 {
-    (void)backend, (void)views, (void)width, (void)height, (void)wireframe;
+    (void)backend, (void)views, (void)width, (void)height, (void)look;
     *out = NULL;
     return ris_fail(err, RIS_ERROR_DEVICE, "this risorius was built without Vulkan, so it cannot draw");
 }

@@ -14,9 +14,15 @@ typedef struct studio_views {
 } studio_views;
 ris_result studio_views_parse(const char *text, studio_views *out, ris_error *err);
 
+/* What the pictures show beside the head itself. */
+typedef struct studio_look {
+    bool wireframe;
+    uint32_t layers; /* of risorius/draw.h; 0 = skin */
+} studio_look;
+
 /* width and height of one view; the picture is count x width wide. backend has a device. */
 ris_result studio_create(const ris_backend *backend, const studio_views *views, uint32_t width,
-                         uint32_t height, bool wireframe, ris_studio **out, ris_error *err);
+                         uint32_t height, const studio_look *look, ris_studio **out, ris_error *err);
 void studio_destroy(ris_studio *studio);
 /* Draws sim with these positions and normals, or its present state when both are NULL. *out_rgba belongs to the
  * studio and stays until the next call (picture width x height x 4). */

@@ -27,12 +27,14 @@ ris_result ris_draw_create(ris_device *device, const ris_model *model, const ris
     draw->device = device;
     draw->model = model;
     draw->wireframe = def->wireframe;
+    draw->shown = RIS_LAYER_SKIN;
     RIS_TRY(ris__draw_scene_build(model, &draw->scene, err));
     RIS_TRY(ris__draw_store_create(draw, err));
     RIS_TRY(ris__draw_target_create(device, def->width, def->height, &draw->target, err));
     RIS_TRY(ris__draw_pipes_create(draw, err));
     RIS_TRY(ris_vk_cmd_create(device, "draw", &draw->cmd, err));
     RIS_TRY(ris_vk_cmd_create(device, "draw copy", &draw->copy, err));
+    RIS_TRY(ris_draw_set_layers(draw, def->layers, err));
     *out = draw;
     return RIS_OK;
 fail:
@@ -47,6 +49,7 @@ void ris_draw_destroy(ris_draw *draw)
     }
     ris_vk_cmd_finish(draw->device, &draw->cmd);
     ris_vk_cmd_finish(draw->device, &draw->copy);
+    ris__draw_layers_finish(draw);
     ris__draw_pipes_finish(draw);
     ris__draw_target_finish(draw->device, &draw->target);
     ris__draw_store_finish(draw);
@@ -73,6 +76,24 @@ ris_result ris_draw_resize(ris_draw *draw, uint32_t width, uint32_t height, ris_
 void ris_draw_set_wireframe(ris_draw *draw, bool wireframe)
 {
     draw->wireframe = wireframe;
+}
+
+ris_result ris_draw_set_layers(ris_draw *draw, uint32_t layers, ris_error *err)
+{
+    if (layers >> RIS_LAYER_COUNT != 0) {
+        return ris_fail(err, RIS_ERROR_USAGE, "there is no layer %#x", (unsigned)layers);
+    }
+    layers = layers == 0 ? RIS_LAYER_SKIN : layers;
+    ris_result result = layers == RIS_LAYER_SKIN ? RIS_OK : ris__draw_layers_create(draw, err);
+    draw->shown = result == RIS_OK ? layers : draw->shown;
+    return result;
+}
+
+void ris_draw_set_muscles(ris_draw *draw, const bool *shown)
+{
+    for (uint32_t m = 0; draw->layers.ready && m < draw->model->muscle_count; m++) {
+        draw->layers.shown[m] = shown == NULL || shown[m];
+    }
 }
 
 void *ris_device_instance(ris_device *device)

@@ -3,6 +3,7 @@
 
 #include "risorius/draw.h"
 
+#include "draw/layers.h"
 #include "draw/scene.h"
 #include "vk/vk.h"
 
@@ -55,6 +56,8 @@ struct ris_draw {
     VkPipeline refine, normal, ride;
     VkPipeline pipe[RIS_DRAW_PIPE_COUNT];
     ris_vk_cmd cmd, copy;
+    ris_draw_layers layers;
+    uint32_t shown; /* ris_layer mask */
     bool wireframe, drawn;
 };
 
@@ -77,6 +80,25 @@ void ris__draw_target_finish(ris_device *device, ris_draw_target *target);
 /* pipes.c: layouts, sets and pipelines */
 ris_result ris__draw_pipes_create(ris_draw *draw, ris_error *err);
 void ris__draw_pipes_finish(ris_draw *draw);
+/* A pipeline of the picture: mesh.vert, opaque, back faces culled. */
+ris_vk_graphics_def ris__draw_picture_def(const ris_draw *draw, ris_vk_code fragment, const char *name);
 /* view.c: fills what is the same for the whole frame */
 void ris__draw_view_fill(const ris_draw *draw, const ris_camera *camera, const float head[12],
                          ris_draw_view *out);
+/* frame.c: one object with the pipeline and the index buffer that are bound; its set when it has nothing special */
+void ris__draw_object(const ris_draw *draw, VkCommandBuffer cmd, const ris_sim *sim,
+                      const ris_draw_item *item, VkDescriptorSet set);
+VkDescriptorSet ris__draw_set_of(const ris_draw *draw, const ris_draw_item *item);
+/* layers.c: makes them on first use; writes what changes every frame. node (node_count) NULL = read from sim. */
+ris_result ris__draw_layers_create(ris_draw *draw, ris_error *err);
+void ris__draw_layers_finish(ris_draw *draw);
+ris_result ris__draw_layers_update(ris_draw *draw, ris_sim *sim, const ris_vec4 *node,
+                                   const ris_camera *camera, ris_error *err);
+/* layer_pipes.c */
+ris_result ris__draw_layer_pipes_create(ris_draw *draw, ris_error *err);
+void ris__draw_layer_pipes_finish(ris_draw *draw);
+/* layer_frame.c: true when the skin is shown alone; bones and muscles as what casts shadows; everything over the
+ * background */
+bool ris__draw_is_plain(const ris_draw *draw);
+void ris__draw_layer_shadow(const ris_draw *draw, VkCommandBuffer cmd, const ris_sim *sim);
+void ris__draw_layer_picture(const ris_draw *draw, VkCommandBuffer cmd, const ris_sim *sim);

@@ -48,13 +48,18 @@ static void chain(const float a[12], const float b[12], float out[12])
     }
 }
 
-static void draw_item(const ris_draw *draw, VkCommandBuffer cmd, const ris_sim *sim,
-                      const ris_draw_item *item)
+VkDescriptorSet ris__draw_set_of(const ris_draw *draw, const ris_draw_item *item)
+{
+    return draw->graphics_sets[item->texture != UINT32_MAX ? item->texture : draw->store.texture_count]
+        .set[0];
+}
+
+void ris__draw_object(const ris_draw *draw, VkCommandBuffer cmd, const ris_sim *sim,
+                      const ris_draw_item *item, VkDescriptorSet set)
 {
     static const float identity[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     float head[12], bone[12], place[12];
     bool textured = item->texture != UINT32_MAX;
-    uint32_t set = textured ? item->texture : draw->store.texture_count;
     ris_sim_head_transform(sim, head);
     memcpy(bone, identity, sizeof bone);
     if (item->bone != RIS_BONE_SKIN) {
@@ -64,11 +69,16 @@ static void draw_item(const ris_draw *draw, VkCommandBuffer cmd, const ris_sim *
     ris_draw_object object = {.tint = {item->tint.x, item->tint.y, item->tint.z, textured ? 1.0f : 0.0f},
                               .pivot = {item->pivot.x, item->pivot.y, item->pivot.z, RELIEF_MM}};
     memcpy(object.place, place, sizeof place);
-    vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, draw->graphics_layout, 0, 1,
-                            draw->graphics_sets[set].set, 0, NULL);
+    vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, draw->graphics_layout, 0, 1, &set, 0, NULL);
     vkCmdPushConstants(cmd, draw->graphics_layout, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT,
                        0, sizeof object, &object);
     vkCmdDrawIndexed(cmd, item->index_count, 1, item->first_index, 0, 0);
+}
+
+static void draw_item(const ris_draw *draw, VkCommandBuffer cmd, const ris_sim *sim,
+                      const ris_draw_item *item)
+{
+    ris__draw_object(draw, cmd, sim, item, ris__draw_set_of(draw, item));
 }
 
 static ris_draw_pipe pipe_of(ris_material material)
@@ -124,8 +134,12 @@ static void record_shadow(const ris_draw *draw, VkCommandBuffer cmd, const ris_s
     ris_draw_item skin = draw->scene.item[0];
     skin.first_index = 0;
     skin.index_count = draw->scene.cast_count;
-    vkCmdBindIndexBuffer(cmd, draw->store.cast.handle, 0, VK_INDEX_TYPE_UINT32);
-    draw_item(draw, cmd, sim, &skin);
+    if (draw->shown & (RIS_LAYER_SKULL | RIS_LAYER_MUSCLES)) {
+        ris__draw_layer_shadow(draw, cmd, sim);
+    } else {
+        vkCmdBindIndexBuffer(cmd, draw->store.cast.handle, 0, VK_INDEX_TYPE_UINT32);
+        draw_item(draw, cmd, sim, &skin);
+    }
     vkCmdEndRendering(cmd);
     ris_vk_image_barrier(cmd, draw->shadow.handle, VK_IMAGE_ASPECT_DEPTH_BIT, target, sampled);
 }
@@ -169,16 +183,9 @@ static void begin_picture(const ris_draw *draw, VkCommandBuffer cmd)
     set_area(cmd, target->width, target->height);
 }
 
-static void record_picture(const ris_draw *draw, VkCommandBuffer cmd, const ris_sim *sim)
+/* Skin and parts, in their order. */
+static void draw_scene(const ris_draw *draw, VkCommandBuffer cmd, const ris_sim *sim)
 {
-    const ris_vk_access color = {VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
-                                 VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
-                                 VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
-    const ris_vk_access copied = {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
-                                  VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL};
-    begin_picture(draw, cmd);
-    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, draw->pipe[RIS_DRAW_PIPE_BACKGROUND]);
-    vkCmdDraw(cmd, 3, 1, 0, 0);
     int bound = -1;
     for (uint32_t i = 0; i < draw->scene.item_count; i++) {
         const ris_draw_item *item = &draw->scene.item[i];
@@ -188,6 +195,25 @@ static void record_picture(const ris_draw *draw, VkCommandBuffer cmd, const ris_
             bound = pipe;
         }
         draw_item(draw, cmd, sim, item);
+    }
+}
+
+static void record_picture(const ris_draw *draw, VkCommandBuffer cmd, const ris_sim *sim)
+{
+    const ris_vk_access color = {VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                                 VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
+                                 VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
+    const ris_vk_access copied = {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
+                                  VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL};
+    begin_picture(draw, cmd);
+    const VkDescriptorSet set = ris__draw_set_of(draw, &draw->scene.item[0]);
+    vkCmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, draw->graphics_layout, 0, 1, &set, 0, NULL);
+    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_GRAPHICS, draw->pipe[RIS_DRAW_PIPE_BACKGROUND]);
+    vkCmdDraw(cmd, 3, 1, 0, 0);
+    if (ris__draw_is_plain(draw)) {
+        draw_scene(draw, cmd, sim);
+    } else {
+        ris__draw_layer_picture(draw, cmd, sim);
     }
     if (draw->wireframe) {
         ris_draw_item lines = draw->scene.item[0];
@@ -201,9 +227,10 @@ static void record_picture(const ris_draw *draw, VkCommandBuffer cmd, const ris_
     ris_vk_image_barrier(cmd, draw->target.color.handle, VK_IMAGE_ASPECT_COLOR_BIT, color, copied);
 }
 
-/* Nodes are bound at buffer + offset; everything else is already in place. */
+/* Nodes are bound at buffer + offset; everything else is already in place. host (node_count): the same nodes where the
+ * host can read them, NULL = read from sim when needed. */
 static ris_result draw_nodes(ris_draw *draw, ris_sim *sim, VkBuffer buffer, VkDeviceSize offset,
-                             const ris_camera *camera, ris_error *err)
+                             const ris_vec4 *host, const ris_camera *camera, ris_error *err)
 {
     ris_result result;
     float head[12];
@@ -214,6 +241,9 @@ static ris_result draw_nodes(ris_draw *draw, ris_sim *sim, VkBuffer buffer, VkDe
     RIS_TRY(ris_vk_cmd_wait(draw->device, &draw->cmd, err));
     memcpy(draw->store.view.data, &view, sizeof view);
     RIS_TRY(ris_vk_buffer_flush(draw->device, &draw->store.view, err));
+    if (!ris__draw_is_plain(draw)) {
+        RIS_TRY(ris__draw_layers_update(draw, sim, host, camera, err));
+    }
     ris_vk_sets_write_buffer(draw->device, &draw->compute_sets, 0, RIS_DRAW_BIND_NODE, buffer, offset, size);
     RIS_TRY(ris_vk_cmd_begin(draw->device, &draw->cmd, true, err));
     VkCommandBuffer cmd = draw->cmd.handle;
@@ -237,20 +267,24 @@ ris_result ris_draw_frame_at(ris_draw *draw, ris_sim *sim, const ris_vec4 *posit
     (void)normal; /* the drawn surface is smoother than the nodes and has its own normals */
     memcpy(draw->store.node.data, position, (size_t)draw->model->node_count * sizeof *position);
     ris_result result = ris_vk_buffer_flush(draw->device, &draw->store.node, err);
-    return result == RIS_OK ? draw_nodes(draw, sim, draw->store.node.handle, 0, camera, err) : result;
+    return result == RIS_OK
+               ? draw_nodes(draw, sim, draw->store.node.handle, 0, draw->store.node.data, camera, err)
+               : result;
 }
 
 ris_result ris_draw_frame(ris_draw *draw, ris_sim *sim, const ris_camera *camera, ris_error *err)
 {
     ris_vk_sim_view there;
     if (ris_vk_sim_get_view(sim, &there) && there.device == draw->device) {
-        return draw_nodes(draw, sim, there.buffer, there.position_offset, camera, err);
+        return draw_nodes(draw, sim, there.buffer, there.position_offset, NULL, camera, err);
     }
     ris_result result = ris_sim_read(sim, RIS_STATE_POSITION, draw->store.node.data, err);
     if (result == RIS_OK) {
         result = ris_vk_buffer_flush(draw->device, &draw->store.node, err);
     }
-    return result == RIS_OK ? draw_nodes(draw, sim, draw->store.node.handle, 0, camera, err) : result;
+    return result == RIS_OK
+               ? draw_nodes(draw, sim, draw->store.node.handle, 0, draw->store.node.data, camera, err)
+               : result;
 }
 
 ris_result ris_draw_read(ris_draw *draw, uint8_t *out, ris_error *err)

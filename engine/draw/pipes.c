@@ -89,7 +89,7 @@ fail:
     return result;
 }
 
-static ris_vk_graphics_def picture_def(const ris_draw *draw, ris_vk_code fragment, const char *name)
+ris_vk_graphics_def ris__draw_picture_def(const ris_draw *draw, ris_vk_code fragment, const char *name)
 {
     return (ris_vk_graphics_def){.layout = draw->graphics_layout,
                                  .vertex = RIS_VK_CODE(ris_spv_mesh_vert),
@@ -108,26 +108,26 @@ static ris_vk_graphics_def picture_def(const ris_draw *draw, ris_vk_code fragmen
 static ris_result create_graphics(ris_draw *draw, ris_error *err)
 {
     ris_vk_graphics_def def[RIS_DRAW_PIPE_COUNT];
-    def[RIS_DRAW_PIPE_SHADOW] = picture_def(draw, RIS_VK_CODE(ris_spv_shadow_frag), "draw shadow");
+    def[RIS_DRAW_PIPE_SHADOW] = ris__draw_picture_def(draw, RIS_VK_CODE(ris_spv_shadow_frag), "draw shadow");
     def[RIS_DRAW_PIPE_SHADOW].vertex = RIS_VK_CODE(ris_spv_shadow_vert);
     def[RIS_DRAW_PIPE_SHADOW].samples = VK_SAMPLE_COUNT_1_BIT;
     def[RIS_DRAW_PIPE_SHADOW].color_format = VK_FORMAT_UNDEFINED;
     def[RIS_DRAW_PIPE_BACKGROUND] =
-        picture_def(draw, RIS_VK_CODE(ris_spv_background_frag), "draw background");
+        ris__draw_picture_def(draw, RIS_VK_CODE(ris_spv_background_frag), "draw background");
     def[RIS_DRAW_PIPE_BACKGROUND].vertex = RIS_VK_CODE(ris_spv_background_vert);
     def[RIS_DRAW_PIPE_BACKGROUND].cull = VK_CULL_MODE_NONE;
     def[RIS_DRAW_PIPE_BACKGROUND].depth_test = def[RIS_DRAW_PIPE_BACKGROUND].depth_write = false;
-    def[RIS_DRAW_PIPE_SKIN] = picture_def(draw, RIS_VK_CODE(ris_spv_skin_frag), "draw skin");
-    def[RIS_DRAW_PIPE_EYE] = picture_def(draw, RIS_VK_CODE(ris_spv_eye_frag), "draw eye");
-    def[RIS_DRAW_PIPE_MOUTH] = picture_def(draw, RIS_VK_CODE(ris_spv_mouth_frag), "draw mouth");
-    def[RIS_DRAW_PIPE_HAIR] = picture_def(draw, RIS_VK_CODE(ris_spv_hair_frag), "draw hair");
+    def[RIS_DRAW_PIPE_SKIN] = ris__draw_picture_def(draw, RIS_VK_CODE(ris_spv_skin_frag), "draw skin");
+    def[RIS_DRAW_PIPE_EYE] = ris__draw_picture_def(draw, RIS_VK_CODE(ris_spv_eye_frag), "draw eye");
+    def[RIS_DRAW_PIPE_MOUTH] = ris__draw_picture_def(draw, RIS_VK_CODE(ris_spv_mouth_frag), "draw mouth");
+    def[RIS_DRAW_PIPE_HAIR] = ris__draw_picture_def(draw, RIS_VK_CODE(ris_spv_hair_frag), "draw hair");
     def[RIS_DRAW_PIPE_HAIR].cull = VK_CULL_MODE_NONE;
     def[RIS_DRAW_PIPE_HAIR].blend = true;
     def[RIS_DRAW_PIPE_HAIR].depth_write = false;
-    def[RIS_DRAW_PIPE_CORNEA] = picture_def(draw, RIS_VK_CODE(ris_spv_cornea_frag), "draw cornea");
+    def[RIS_DRAW_PIPE_CORNEA] = ris__draw_picture_def(draw, RIS_VK_CODE(ris_spv_cornea_frag), "draw cornea");
     def[RIS_DRAW_PIPE_CORNEA].blend = true;
     def[RIS_DRAW_PIPE_CORNEA].depth_write = false;
-    def[RIS_DRAW_PIPE_WIRE] = picture_def(draw, RIS_VK_CODE(ris_spv_wire_frag), "draw wire");
+    def[RIS_DRAW_PIPE_WIRE] = ris__draw_picture_def(draw, RIS_VK_CODE(ris_spv_wire_frag), "draw wire");
     def[RIS_DRAW_PIPE_WIRE].vertex = RIS_VK_CODE(ris_spv_wire_vert);
     def[RIS_DRAW_PIPE_WIRE].topology = VK_PRIMITIVE_TOPOLOGY_LINE_LIST;
     def[RIS_DRAW_PIPE_WIRE].cull = VK_CULL_MODE_NONE;

@@ -155,3 +155,22 @@ void ris__draw_view_fill(const ris_draw *draw, const ris_camera *camera, const f
     out->size = (ris_vec4){(float)draw->target.width, (float)draw->target.height, (float)RIS_DRAW_SHADOW_SIDE,
                            2.0f * radius / (float)RIS_DRAW_SHADOW_SIDE};
 }
+
+bool ris_camera_project(const ris_camera *camera, uint32_t width, uint32_t height, ris_vec3 point,
+                        float *out_x, float *out_y, float *out_distance)
+{
+    ris_vec4 row[4];
+    camera_rows(camera, (float)width / (float)height, 1.0f, 2.0f, row);
+    const float w = row[3].x * point.x + row[3].y * point.y + row[3].z * point.z + row[3].w;
+    if (!(w > 0.0f)) {
+        return false;
+    }
+    const float x = row[0].x * point.x + row[0].y * point.y + row[0].z * point.z + row[0].w,
+                y = row[1].x * point.x + row[1].y * point.y + row[1].z * point.z + row[1].w;
+    *out_x = (0.5f + 0.5f * x / w) * (float)width;
+    *out_y = (0.5f + 0.5f * y / w) * (float)height;
+    if (out_distance != NULL) {
+        *out_distance = w;
+    }
+    return true;
+}

@@ -24,6 +24,7 @@ ris_result ris__rig_init(ris_rig *rig, const ris_model *model, ris_error *err)
         {&rig->activity, model->muscle_count, sizeof *rig->activity},
         {&rig->drag, 2 * (size_t)model->muscle_count, sizeof *rig->drag},
         {&rig->bulge, model->segment_count, sizeof *rig->bulge},
+        {&rig->muscle_jaw, model->fiber_point_count, sizeof *rig->muscle_jaw},
         {&rig->target, model->node_count, sizeof *rig->target},
         {&rig->point, model->node_count, sizeof *rig->point},
         {&rig->delta, model->node_count, sizeof *rig->delta},
@@ -44,6 +45,11 @@ ris_result ris__rig_init(ris_rig *rig, const ris_model *model, ris_error *err)
                              model->group_point[g].point] = true;
         }
     }
+    ris_result result = ris__muscle_jaw_weights(model, rig->muscle_jaw, err);
+    if (result != RIS_OK) {
+        ris__rig_finish(rig);
+        return result;
+    }
     ris__rig_reset(rig);
     return RIS_OK;
 }
@@ -58,6 +64,7 @@ void ris__rig_finish(ris_rig *rig)
     free(rig->activity);
     free(rig->drag);
     free(rig->bulge);
+    free(rig->muscle_jaw);
     free(rig->target);
     free(rig->point);
     free(rig->delta);
@@ -78,6 +85,7 @@ void ris__rig_reset(ris_rig *rig)
     memset(rig->activity, 0, model->muscle_count * sizeof *rig->activity);
     memset(rig->drag, 0, 2 * (size_t)model->muscle_count * sizeof *rig->drag);
     memset(rig->delta, 0, model->node_count * sizeof *rig->delta);
+    memset(rig->lid_move, 0, model->lid_count * sizeof *rig->lid_move);
     for (uint32_t s = 0; s < model->segment_count; ++s) {
         rig->bulge[s] = 1.0f;
     }

@@ -56,6 +56,8 @@ typedef struct ris_rig {
     bool *constrained; /* per fibre point (fiber_point_count) */
     /* muscle_bulge */
     float *bulge; /* height scale per segment (segment_count) */
+    /* muscle_shape */
+    float *muscle_jaw; /* how far each control point turns with the jaw, 0..1 (fiber_point_count); constant */
     /* muscle_attach */
     ris_vec3 *target;        /* of the previous tick (node_count) */
     ris_anchor_point *point; /* (node_count) */
@@ -77,6 +79,11 @@ void ris__muscle_relax(ris_rig *rig);
 void ris__muscle_bulge(ris_rig *rig);
 void ris__muscle_attach(ris_rig *rig);
 void ris__lid_pose(ris_rig *rig, const float *pose);
+
+/* How far each control point turns with the jaw when shown (fiber_point_count). */
+ris_result ris__muscle_jaw_weights(const ris_model *model, float *weight, ris_error *err);
+/* Muscles of the tick in skull space: control points (fiber_point_count), segments (segment_count). */
+void ris__muscle_shape(const ris_rig *rig, ris_vec3 *point, ris_segment *segment);
 
 /* Formulas of the stages, alone for the hand-computed numbers of the tests. */
 

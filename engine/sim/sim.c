@@ -298,3 +298,34 @@ void ris_sim_head_transform(const ris_sim *sim, float out[12])
 {
     write_transform(&sim->rig.head, out);
 }
+
+void ris_sim_muscles(const ris_sim *sim, ris_vec3 *point, ris_segment *segment)
+{
+    ris__muscle_shape(&sim->rig, point, segment);
+}
+
+float ris_sim_activation(const ris_sim *sim, uint32_t muscle)
+{
+    return muscle < sim->model->muscle_count ? sim->rig.activation[muscle] : 0.0f;
+}
+
+ris_vec3 ris_sim_landmark(const ris_sim *sim, uint32_t landmark, const ris_vec4 *position, ris_vec3 *out_tip)
+{
+    const ris_landmark *mark = &sim->model->head->landmark[landmark];
+    ris_vec3 at = {0}, tip;
+    if (mark->mesh == RIS_LANDMARK_SKIN) {
+        for (int k = 0; k < 3; ++k) {
+            at = v3_mad(at, mark->weight[k], v4_xyz(position[mark->vertex[k]]));
+        }
+        tip = at;
+    } else {
+        const bool jaw = mark->mesh == RIS_LANDMARK_MANDIBLE;
+        tip = v3_mad(mark->at, mark->depth_mm, mark->dowel);
+        at = jaw ? ris__rigid_apply(&sim->rig.jaw, mark->at) : mark->at;
+        tip = jaw ? ris__rigid_apply(&sim->rig.jaw, tip) : tip;
+    }
+    if (out_tip) {
+        *out_tip = tip;
+    }
+    return at;
+}

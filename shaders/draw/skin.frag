@@ -1,50 +1,11 @@
-// Skin: light that bleeds into the shadow edge (red farthest), two specular lobes broken up by pores, ambient that
-// keeps red in the creases.
+// Skin, opaque.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "draw_graphics.glsl"
 #include "draw_light.glsl"
-
-layout(location = 0) in vec3 in_world;
-layout(location = 1) in vec3 in_normal;
-layout(location = 2) in vec2 in_uv;
-layout(location = 3) in vec4 in_rest;
-layout(location = 0) out vec4 out_color;
+#include "draw_skin.glsl"
 
 void main()
 {
-    vec3 smooth_n = normalize(in_normal), v = normalize(view.eye.xyz - in_world);
-    vec3 albedo = base_color(in_uv);
-    float ao = clamp(in_rest.w, 0.0, 1.0);
-
-    // relief of the detail texture, by differences over the pixel (Mikkelsen 2010); mip levels flatten it far away
-    vec3 detail = texture(detail_texture, in_uv).rgb;
-    vec3 along_x = dFdx(in_world), along_y = dFdy(in_world);
-    vec3 across_x = cross(along_y, smooth_n), across_y = cross(smooth_n, along_x);
-    float area = dot(along_x, across_x);
-    vec3 slope = object.pivot.w * sign(area) * (dFdx(detail.r) * across_x + dFdy(detail.r) * across_y);
-    vec3 n = normalize(abs(area) * smooth_n - slope);
-    vec3 soft = normalize(mix(smooth_n, n, 0.4));
-
-    float rough = 0.72 - 0.45 * detail.g;
-    float thin = detail.b;
-    float gloss = ao * ao;
-
-    vec3 spread = vec3(0.32, 0.12, 0.07) + thin * vec3(0.45, 0.12, 0.06);
-    // creases keep some red: light scatters in from their walls
-    vec3 open = ao * (vec3(1.35, 0.95, 0.85) - ao * vec3(0.35, -0.05, -0.15)) + (1.0 - ao) * vec3(0.15, 0.05, 0.045);
-    float lit = key_shadow(in_world, smooth_n);
-    vec3 diffuse = ambient(soft) * open, shine = vec3(0.0);
-    for (int k = 0; k < 3; k++) {
-        vec3 l = view.light[k].xyz;
-        // the shadow's edge is red too
-        vec3 through = k == 0 ? lit * (vec3(1.5, 0.95, 0.8) - lit * vec3(0.5, -0.05, -0.2)) : open;
-        float bare = dot(n, l), deep = dot(soft, l);
-        diffuse += view.radiance[k].rgb * wrapped(deep * vec3(1.0, 0.4, 0.0) + bare * vec3(0.0, 0.6, 1.0), spread) * through;
-        shine += view.radiance[k].rgb * (specular2(n, v, l, rough, 0.028, 0.25, 0.6) * (k == 0 ? lit : k == 1 ? ao : 0.4 * ao) * gloss);
-    }
-    // soft reflection of the room at grazing angles
-    float grazing = fifth(1.0 - clamp(dot(n, v), 0.0, 1.0));
-    vec3 room = ambient(reflect(-v, n)) * ((0.014 + 0.16 * grazing) * gloss);
-    out_color = vec4(melt(tone(albedo * diffuse + 1.7 * shine + room), in_rest.y), 1.0);
+    out_color = vec4(melt(skin_color(), in_rest.y), 1.0);
 }

@@ -20,6 +20,7 @@
 #endif
 
 #define RIS_DRAW_GROUP 64
+#define RIS_DRAW_STRAIN_FULL 0.4 /* RIS_STRAIN_FULL of risorius/draw.h */
 
 /* Set 0 of refine.comp, surface_normal.comp and ride.comp; all storage buffers. "Surface" vertices are what is drawn: the
  * refined skin first, then the parts. */

@@ -111,6 +111,9 @@ static void absurd_numbers_are_usage_errors(void **state)
     expect("render " HEAD " --pose jaw.open=1 -o x.png --view front,", 2, "--view");
     expect("render " HEAD " --clip " CLIP " -o x.png --at nan", 2, "--at");
     expect("render " HEAD " --clip " CLIP " -o x.png --at -1", 2, "--at");
+    expect("render " HEAD " --pose jaw.open=1 -o x.png --layers skin,mucles", 2, "muscles");
+    expect("render " HEAD " --pose jaw.open=1 -o x.png --layers skin,", 2, "--layers");
+    expect("render " HEAD " --pose jaw.open=1 -o x.png --layers ''", 2, "--layers");
     expect("bench " HEAD " --repeat 0", 2, "--repeat");
 }
 

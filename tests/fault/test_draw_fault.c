@@ -23,6 +23,9 @@ static ris_result run_draw(ris_error *err)
         result = ris_draw_frame(draw, sim, &camera, err);
     }
     if (result == RIS_OK) {
+        result = ris_draw_set_layers(draw, (1u << RIS_LAYER_COUNT) - 1, err);
+    }
+    if (result == RIS_OK) {
         result = ris_draw_resize(draw, 24, 24, err);
     }
     if (result == RIS_OK) {

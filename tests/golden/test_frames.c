@@ -74,20 +74,27 @@ static void golden_frames(void **state)
     static const struct {
         const char *name, *pose, *view;
         bool built, wireframe;
+        uint32_t layers;
     } frame[] = {
-        {"scene-front", "", "front", true, false},
-        {"scene-wire", "", "34", true, true},
-        {"head-front", "", "front", false, false},
-        {"head-34", "", "34", false, false},
-        {"head-jaw-open", "jaw.open=1", "front", false, false},
+        {"scene-front", "", "front", true, false, 0},
+        {"scene-wire", "", "34", true, true, 0},
+        {"head-front", "", "front", false, false, 0},
+        {"head-34", "", "34", false, false, 0},
+        {"head-jaw-open", "jaw.open=1", "front", false, false, RIS_LAYER_SKIN},
+        {"scene-muscles", "zygomaticus_major=1,jaw.open=0.5", "front", true, false, RIS_LAYER_MUSCLES},
+        {"head-glass", "jaw.open=1", "34", false, false,
+         RIS_LAYER_SKIN | RIS_LAYER_SKULL | RIS_LAYER_LANDMARKS},
+        {"scene-strain", "zygomaticus_major=1", "front", true, false, RIS_LAYER_STRAIN},
     };
     static uint8_t pixels[BYTES];
+    ris_error err = {0};
     ris_draw *draw[2] = {open_draw(scene), open_draw(head)};
     int different = 0;
     for (size_t i = 0; i < sizeof frame / sizeof frame[0]; i++) {
         ris_draw *with = draw[frame[i].built ? 0 : 1];
         ris_sim *sim = hold(frame[i].built ? scene : head, frame[i].pose, NULL);
         ris_draw_set_wireframe(with, frame[i].wireframe);
+        GOOD(ris_draw_set_layers(with, frame[i].layers, &err));
         picture(with, sim, frame[i].view, pixels);
         different += !golden_check(frame[i].name, pixels, WIDTH, HEIGHT);
         ris_sim_destroy(sim);

@@ -1,5 +1,5 @@
 /* The raster pass under validation and synchronization validation: the reference head with all its parts,
- * an image size that changes, wireframe, and arrays given from outside. Not one message; test_validation
+ * an image size that changes, wireframe, layers, and arrays given from outside. Not one message; test_validation
  * proves that messages would be seen. */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -67,6 +67,15 @@ static void drawing_is_silent(void **state)
     assert_int_equal(ris_draw_resize(draw, 64, 64, &err), RIS_OK);
     ris_draw_set_wireframe(draw, true);
     draw_frame(draw, sim[0], 64, false);
+    for (uint32_t layers = 1; layers < 1u << RIS_LAYER_COUNT; layers = 2 * layers + (layers & 1u)) {
+        /* one layer more each time, then each alone */
+        assert_int_equal(ris_draw_set_layers(draw, layers, &err), RIS_OK);
+        draw_frame(draw, sim[0], 64, false);
+    }
+    for (uint32_t k = 0; k < RIS_LAYER_COUNT; k++) {
+        assert_int_equal(ris_draw_set_layers(draw, 1u << k, &err), RIS_OK);
+        draw_frame(draw, sim[k & 1u], 64, k == 2);
+    }
     ris_draw_destroy(draw);
     ris_sim_destroy(sim[0]);
     ris_sim_destroy(sim[1]);

@@ -77,6 +77,17 @@ void ris_sim_bone_transform(const ris_sim *sim, ris_bone bone, float out[12]);
 /* Head pose channels as a row-major 3x4, applied to everything when drawing. */
 void ris_sim_head_transform(const ris_sim *sim, float out[12]);
 
+/* Muscles of the last tick in skull space (without the head pose): control points of the fibres
+ * (fiber_point_count), and the segments as they are now, height with its bulge (segment_count). What is on
+ * the jaw or the lower lip is turned with the jaw in every tissue. */
+void ris_sim_muscles(const ris_sim *sim, ris_vec3 *point, ris_segment *segment);
+/* Activation of a muscle at the last tick, 0..1. */
+float ris_sim_activation(const ris_sim *sim, uint32_t muscle);
+
+/* Where a landmark of the head is, in skull space: on the skin at position (node_count, as read from sim), or with
+ * its bone. out_tip (may be NULL) is the end of its dowel, the same point on the skin. */
+ris_vec3 ris_sim_landmark(const ris_sim *sim, uint32_t landmark, const ris_vec4 *position, ris_vec3 *out_tip);
+
 /* Vertices of part `part` of the head (vertex_count of its mesh, w 1): by its bone, or riding on the skin
  * at position (node_count, as read from sim). Without the head pose, as the skin. RIS_ERROR_USAGE: no such
  * part. */
