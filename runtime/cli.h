@@ -23,8 +23,8 @@ typedef struct cli_command {
                       ris_error *err); /* argv[0] is the command's name */
 } cli_command;
 
-extern const cli_command cmd_devices, cmd_info, cmd_render, cmd_export, cmd_compare, cmd_bench, cmd_validate,
-    cmd_view;
+extern const cli_command cmd_devices, cmd_info, cmd_render, cmd_export, cmd_compare, cmd_bench, cmd_soak,
+    cmd_validate, cmd_view;
 
 #define CLI_LIST_SIZE 8
 

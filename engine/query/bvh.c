@@ -198,16 +198,22 @@ static double ray_triangle(dvec o, dvec d, dvec a, dvec b, dvec c)
     return u < 0 || v < 0 || u + v > 1 ? NAN : dv_dot(e2, q) / det;
 }
 
-/* crossings counts all hits when it is given, and then the ray is not shortened. */
+/* All hits of a ray, and those that leave through the front less those that enter through it. */
+typedef struct ray_count {
+    uint32_t crossings;
+    int32_t leaving;
+} ray_count;
+
+/* count counts all hits when it is given, and then the ray is not shortened. */
 static void ray_in(const bvh *tree, uint32_t index, dvec o, dvec d, dvec inverse, double from, bvh_hit *best,
-                   uint32_t *crossings)
+                   ray_count *count)
 {
     const bvh_node *node = &tree->node[index];
     if (!ray_meets_box(node, o, inverse, from, best->distance))
         return;
     if (node->count == 0) {
-        ray_in(tree, node->first, o, d, inverse, from, best, crossings);
-        ray_in(tree, node->first + 1, o, d, inverse, from, best, crossings);
+        ray_in(tree, node->first, o, d, inverse, from, best, count);
+        ray_in(tree, node->first + 1, o, d, inverse, from, best, count);
         return;
     }
     for (uint32_t i = node->first; i < node->first + node->count; i++) {
@@ -216,9 +222,10 @@ static void ray_in(const bvh *tree, uint32_t index, dvec o, dvec d, dvec inverse
         double at = ray_triangle(o, d, v[t[0]], v[t[1]], v[t[2]]);
         if (!(at > from && at < best->distance))
             continue;
-        if (crossings)
-            ++*crossings;
-        else
+        if (count) {
+            count->crossings++;
+            count->leaving += dv_dot(ris__tri_normal(tree->mesh, tree->order[i]), d) > 0 ? 1 : -1;
+        } else
             *best = (bvh_hit){true, tree->order[i], at, dv_mad(o, at, d)};
     }
 }
@@ -232,19 +239,33 @@ bvh_hit ris__bvh_ray(const bvh *tree, dvec origin, dvec direction, double from, 
     return best;
 }
 
-bool ris__bvh_inside(const bvh *tree, dvec p)
+static ray_count count_ray(const bvh *tree, dvec p, int ray)
 {
     static const dvec skew[3] = {
         {0.5773, 0.6211, 0.5301}, {-0.3127, 0.8011, -0.5107}, {0.2111, -0.4433, 0.8713}};
+    dvec d = dv_unit(skew[ray]), inverse = dv(1 / d.x, 1 / d.y, 1 / d.z);
+    bvh_hit best = {.distance = 1e9};
+    ray_count count = {0};
+    if (tree->mesh->triangle_count)
+        ray_in(tree, 0, p, d, inverse, 0, &best, &count);
+    return count;
+}
+
+bool ris__bvh_inside(const bvh *tree, dvec p)
+{
     int votes = 0;
-    for (int k = 0; k < 3; k++) {
-        dvec d = dv_unit(skew[k]), inverse = dv(1 / d.x, 1 / d.y, 1 / d.z);
-        bvh_hit best = {.distance = 1e9};
-        uint32_t crossings = 0;
-        ray_in(tree, 0, p, d, inverse, 0, &best, &crossings);
-        votes += crossings & 1;
-    }
+    for (int k = 0; k < 3; k++)
+        votes += count_ray(tree, p, k).crossings & 1;
     return votes >= 2;
+}
+
+int32_t ris__bvh_winding(const bvh *tree, dvec p)
+{
+    const int32_t a = count_ray(tree, p, 0).leaving, b = count_ray(tree, p, 1).leaving;
+    if (a == b)
+        return a;
+    const int32_t c = count_ray(tree, p, 2).leaving, low = a < b ? a : b, high = a < b ? b : a;
+    return c < low ? low : c > high ? high : c;
 }
 
 double ris__bvh_depth(const bvh *tree, dvec p)

@@ -86,5 +86,8 @@ bvh_hit ris__bvh_closest_facing(const bvh *tree, dvec p, dvec normal, double cos
 bvh_hit ris__bvh_ray(const bvh *tree, dvec origin, dvec direction, double from, double to);
 /* Parity of a skew ray decides, three rays vote. mesh must be closed. */
 bool ris__bvh_inside(const bvh *tree, dvec p);
+/* How often the mesh goes round p: 0 outside, 1 inside, more where it overlaps itself. Signed crossings of a skew ray;
+ * where two rays disagree (one met an edge) the median of three. mesh must be closed and oriented. */
+int32_t ris__bvh_winding(const bvh *tree, dvec p);
 /* Distance to the surface, positive inside. */
 double ris__bvh_depth(const bvh *tree, dvec p);

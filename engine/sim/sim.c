@@ -11,10 +11,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LARGEST_MM 1e5f        /* a node this far out has diverged */
-#define REST_SPEED_MM_S 0.1f   /* at rest, docs/physics.md */
-#define REST_TICKS 15          /* 0.25 s */
-#define SETTLE_TICKS (20 * 60) /* 20 s */
+#define LARGEST_MM 1e5f      /* a node this far out has diverged */
+#define REST_SPEED_MM_S 0.1f /* at rest, docs/physics.md */
+#define REST_TICKS 15        /* 0.25 s */
+#define SETTLE_S 20
 
 struct ris_sim {
     const ris_model *model;
@@ -188,39 +188,54 @@ ris_result ris_sim_tick(ris_sim *sim, const float *pose, ris_error *err)
     return result;
 }
 
-ris_result ris_sim_settle(ris_sim *sim, const float *pose, double *out_time_s, ris_error *err)
+/* The fastest node now. */
+static ris_result find_fastest(ris_sim *sim, ris_hold *out, ris_error *err)
 {
-    const uint32_t n = sim->model->node_count;
-    uint32_t quiet = 0, worst = 0;
-    float worst_speed = 0.0f;
-    for (uint32_t tick = 1; tick <= SETTLE_TICKS; ++tick) {
+    ris_result result = sim->impl->read(sim->self, RIS_STATE_VELOCITY_HALF, sim->scratch, err);
+    float worst = 0.0f;
+    for (uint32_t i = 0; result == RIS_OK && i < sim->model->node_count; ++i) {
+        const float speed2 = v3_dot(v4_xyz(sim->scratch[i]), v4_xyz(sim->scratch[i]));
+        if (speed2 > worst) {
+            worst = speed2;
+            out->vertex = i;
+        }
+    }
+    out->speed_mm_s = sqrtf(worst);
+    return result;
+}
+
+ris_result ris_sim_hold(ris_sim *sim, const float *pose, double limit_s, ris_hold *out, ris_error *err)
+{
+    uint32_t quiet = 0;
+    *out = (ris_hold){0};
+    for (uint32_t tick = 1; !out->at_rest && (tick - 0.5) * RIS_TICK_S < limit_s; ++tick) {
         ris_result result = ris_sim_tick(sim, pose, err);
         if (result == RIS_OK) {
-            result = sim->impl->read(sim->self, RIS_STATE_VELOCITY_HALF, sim->scratch, err);
+            result = find_fastest(sim, out, err);
         }
         if (result != RIS_OK) {
             return result;
         }
-        worst_speed = 0.0f;
-        for (uint32_t i = 0; i < n; ++i) {
-            const float speed2 = v3_dot(v4_xyz(sim->scratch[i]), v4_xyz(sim->scratch[i]));
-            if (speed2 > worst_speed) {
-                worst_speed = speed2;
-                worst = i;
-            }
-        }
-        worst_speed = sqrtf(worst_speed);
-        quiet = worst_speed <= REST_SPEED_MM_S ? quiet + 1 : 0;
-        if (quiet >= REST_TICKS) {
-            if (out_time_s) {
-                *out_time_s = tick * RIS_TICK_S;
-            }
-            return RIS_OK;
-        }
+        quiet = out->speed_mm_s <= REST_SPEED_MM_S ? quiet + 1 : 0;
+        out->at_rest = quiet >= REST_TICKS;
+        out->time_s = tick * RIS_TICK_S;
     }
-    return ris_fail(err, RIS_ERROR_FAILED,
-                    "the pose did not come to rest in %d s: vertex %u still moves at %.3f mm/s",
-                    SETTLE_TICKS / 60, worst, (double)worst_speed);
+    return RIS_OK;
+}
+
+ris_result ris_sim_settle(ris_sim *sim, const float *pose, double *out_time_s, ris_error *err)
+{
+    ris_hold hold;
+    ris_result result = ris_sim_hold(sim, pose, SETTLE_S, &hold, err);
+    if (result == RIS_OK && !hold.at_rest) {
+        result = ris_fail(err, RIS_ERROR_FAILED,
+                          "the pose did not come to rest in %d s: vertex %u still moves at %.3f mm/s",
+                          SETTLE_S, hold.vertex, (double)hold.speed_mm_s);
+    }
+    if (result == RIS_OK && out_time_s) {
+        *out_time_s = hold.time_s;
+    }
+    return result;
 }
 
 ris_result ris_sim_read(ris_sim *sim, ris_state state, ris_vec4 *out, ris_error *err)

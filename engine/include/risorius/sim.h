@@ -61,6 +61,17 @@ ris_result ris_sim_tick(ris_sim *sim, const float *pose, ris_error *err);
  * out_time_s may be NULL. */
 ris_result ris_sim_settle(ris_sim *sim, const float *pose, double *out_time_s, ris_error *err);
 
+/* How a pose was held: for how long, and what moved fastest at the end. */
+typedef struct ris_hold {
+    bool at_rest; /* no node faster than 0.1 mm/s for 0.25 s */
+    double time_s;
+    float speed_mm_s;
+    uint32_t vertex;
+} ris_hold;
+
+/* Ticks until at rest or for limit_s, whichever is first; not at rest is no error. */
+ris_result ris_sim_hold(ris_sim *sim, const float *pose, double limit_s, ris_hold *out, ris_error *err);
+
 ris_result ris_sim_read(ris_sim *sim, ris_state state, ris_vec4 *out, ris_error *err); /* (node_count) */
 ris_result ris_sim_write(ris_sim *sim, ris_state state, const ris_vec4 *in,
                          ris_error *err); /* (node_count) */
