@@ -190,5 +190,11 @@ void write_teeth(const maker *m);
 void write_tongue(const maker *m);
 void write_hair(const maker *m);
 
+/* occlude.c */
+/* How far each tooth of the left half (teeth of them) has to be set back into its jaw so that the arches meet with a gap of
+ * gap_mm instead of passing into each other; 0 for teeth that do not reach the other arch. mm. */
+void occlude(const part *lower, const part *upper, uint32_t teeth, double gap_mm, double *lower_back,
+             double *upper_back);
+
 /* muscles.c */
 void write_muscles(const maker *m);

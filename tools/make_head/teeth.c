@@ -13,8 +13,9 @@
 
 typedef struct arch {
     double half_width, front_z, back_z, power, edge_y, rise, crown_mm,
-        fold_mm;                  /* fold: height of the outer gum */
-    double sign;                  /* +1: edges point down (upper) */
+        fold_mm;       /* fold: height of the outer gum */
+    double sign;       /* +1: edges point down (upper) */
+    double back[HALF]; /* how far each tooth is set back into its jaw so that it only meets the other arch */
     double length[ARC_STEPS + 1]; /* arc length from the middle to sample k */
     dvec at[ARC_STEPS + 1];       /* on the edge line, left half */
 } arch;
@@ -164,8 +165,11 @@ static part build_teeth(const arch *a, const crown *crowns)
     double scale = arch_scale(a, crowns), s = 0;
     for (int k = 0; k < HALF; k++) {
         crown c = crowns[k];
+        uint32_t first = left.vertex_count;
         c.width *= scale;
         add_tooth(&left, a, &c, s + c.width / 2, 0.5 + 0.5 * k / HALF, 0.5 + 0.5 * (k + 1) / HALF);
+        for (uint32_t i = first; i < left.vertex_count; i++)
+            left.position[i].y += a->sign * a->back[k];
         s += c.width;
     }
     part right = part_mirrored(&left);
@@ -180,9 +184,11 @@ static part build_teeth(const arch *a, const crown *crowns)
  * Station at arc length s; the eleven points run from the outer fold over the margin to the inside. */
 enum { GUM_POINTS = 11, GUM_PER_TOOTH = 7 };
 
-static void gum_station(part *p, const arch *a, const crown *c, double s, double in_tooth, double u)
+static void gum_station(part *p, const arch *a, const crown *c, double s, double in_tooth, double back,
+                        double u)
 {
     dvec along, out, base = arch_at(a, s, &along, &out), up = v3(0, a->sign, 0);
+    base.y += a->sign * back;
     double width, depth, lean;
     section(c, 0.05, &width, &depth, &lean);
     double between = pow(fabs(2 * in_tooth - 1), 2.4), line = a->crown_mm * c->height;
@@ -237,13 +243,14 @@ static part build_gum(const arch *a, const crown *crowns)
         double s = start + in_tooth * crowns[k].width * scale;
         crown c = crowns[k];
         int other = in_tooth < 0.5 ? k - 1 : k + 1; /* sections change smoothly from tooth to tooth */
-        double share = fabs(in_tooth - 0.5);
+        double share = fabs(in_tooth - 0.5), back = a->back[k];
         if (other >= 0 && other < HALF) {
             c.depth += share * (crowns[other].depth - c.depth);
             c.height += share * (crowns[other].height - c.height);
+            back += share * (a->back[other] - back);
         }
         c.cusps = k < 3 ? 0 : 2;
-        gum_station(&p, a, &c, from_middle < 0 ? -s : s, in_tooth,
+        gum_station(&p, a, &c, from_middle < 0 ? -s : s, in_tooth, back,
                     0.5 + 0.5 * (from_middle < 0 ? -s : s) / total);
     }
     for (uint32_t i = 0; i + 1 < stations; i++) /* the last strip closes the band underneath */
@@ -262,18 +269,29 @@ static part build_gum(const arch *a, const crown *crowns)
 void write_teeth(const maker *m)
 {
     static const char *const keys[] = {"upper", "lower"};
+    static const crown *const crowns[] = {upper_crowns, lower_crowns};
+    arch arches[2];
+    part first[2];
     for (int i = 0; i < 2; i++) {
-        arch a;
+        build_arch(m, keys[i], &arches[i]);
+        first[i] = build_teeth(&arches[i], crowns[i]);
+    }
+    occlude(&first[1], &first[0], HALF, recipe_number(recipe_get(m->recipe, "teeth"), "gap_mm"),
+            arches[1].back, arches[0].back);
+    for (int i = 0; i < 2; i++) {
         char name[64];
-        const crown *crowns = i ? lower_crowns : upper_crowns;
-        build_arch(m, keys[i], &a);
-        part teeth = build_teeth(&a, crowns), gum = build_gum(&a, crowns);
+        part teeth = build_teeth(&arches[i], crowns[i]), gum = build_gum(&arches[i], crowns[i]);
         snprintf(name, sizeof name, "teeth_%s.obj", keys[i]);
         write_part(m, &teeth, name);
         snprintf(name, sizeof name, "gum_%s.obj", keys[i]);
         write_part(m, &gum, name);
-        printf("%s teeth: %u vertices, widths x %.3f\n", keys[i], teeth.vertex_count, arch_scale(&a, crowns));
+        printf("%s teeth: %u vertices, widths x %.3f, set back", keys[i], teeth.vertex_count,
+               arch_scale(&arches[i], crowns[i]));
+        for (int k = 0; k < HALF; k++)
+            printf(" %.2f", arches[i].back[k]);
+        printf(" mm\n");
         part_finish(&teeth);
         part_finish(&gum);
+        part_finish(&first[i]);
     }
 }
