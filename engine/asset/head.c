@@ -94,9 +94,10 @@ static ris_result read_simulated(const ris_json_at *root, ris_head *head, ris_er
 
 static ris_result read_head(const ris_json *json, ris_head *head, ris_error *err)
 {
-    static const char *const keys[] = {"format",    "version",     "units", "skin",     "map",    "color",
-                                       "regions",   "simulated",   "skull", "mandible", "depth",  "muscles",
-                                       "landmarks", "expressions", "parts", "jaw",      "tissue", NULL};
+    static const char *const keys[] = {"format", "version", "units",     "skin",        "map",
+                                       "color",  "regions", "simulated", "skull",       "mandible",
+                                       "depth",  "muscles", "landmarks", "expressions", "parts",
+                                       "jaw",    "tissue",  "guidance",  NULL};
     static const char *const units_known[] = {"mm", NULL};
     ris_json_at root = ris__json_root(json);
     ris_json_at units = ris__json_key(&root, "units"), color = ris__json_key(&root, "color");
@@ -115,7 +116,9 @@ static ris_result read_head(const ris_json *json, ris_head *head, ris_error *err
         (result = read_json(&root, "regions", RIS_JSON_REQUIRED, ris__regions_read, head, err)) ||
         (result = read_simulated(&root, head, err)) ||
         (result = read_text(&root, "depth", RIS_JSON_REQUIRED, ris__depth_read, head, err)) ||
-        (result = ris__jaw_read(&jaw, head, err)) || (result = ris__tissue_read(&tissue, head, err)) ||
+        (result = ris__jaw_read(&jaw, head, err)) ||
+        (result = read_text(&root, "guidance", RIS_JSON_OPTIONAL, ris__guidance_read, head, err)) ||
+        (result = ris__tissue_read(&tissue, head, err)) ||
         (result = read_json(&root, "muscles", RIS_JSON_REQUIRED, ris__muscles_read, head, err)) ||
         (result = read_json(&root, "landmarks", RIS_JSON_OPTIONAL, ris__landmarks_read, head, err)) ||
         (result =
@@ -172,6 +175,9 @@ void ris_head_finish(ris_head *head)
     free(head->directory);
     free(head->base_vertex);
     free(head->color);
+    free(head->guidance.forward_mm);
+    free(head->guidance.side);
+    free(head->guidance.open_deg);
     free(head->depth_mm);
     free(head->jaw_weight);
     *head = (ris_head){0};

@@ -19,6 +19,9 @@ ris_result ris__head_expressions_read(const ris_json *json, ris_head *head, ris_
 /* depth.csv: "vertex,depth_mm,jaw_weight", one row per vertex in order. name stands for the file in errors.
  * */
 ris_result ris__depth_read(const char *name, const char *text, size_t size, ris_head *head, ris_error *err);
+/* guidance.csv: "forward_mm,side,open_deg", a full grid. */
+ris_result ris__guidance_read(const char *name, const char *text, size_t size, ris_head *head,
+                              ris_error *err);
 /* skin.map: one base vertex or -1 per line, one line per vertex. */
 ris_result ris__map_read(const char *name, const char *text, size_t size, ris_head *head, ris_error *err);
 

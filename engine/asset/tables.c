@@ -1,5 +1,6 @@
 /* depth.csv and skin.map: one line per skin vertex. Errors give line and column. */
 #include "asset/head_parts.h"
+#include "asset/lines.h"
 #include "base/text.h"
 
 #include <stdlib.h>
@@ -8,16 +9,7 @@
 #define MAX_DEPTH_MM 100.0
 #define CSV_HEADER "vertex,depth_mm,jaw_weight"
 
-typedef struct lines {
-    const char *name, *next, *end; /* next line starts at next */
-    const char *start, *at, *stop; /* of the present line */
-    uint32_t line;
-    ris_error *err;
-} lines;
-
-/* Steps to the next line; false at the end of the text. A last line without newline counts, an empty one does
- * not. */
-static bool next_line(lines *l)
+bool ris__lines_next(ris_lines *l)
 {
     if (l->next >= l->end) {
         return false;
@@ -33,38 +25,46 @@ static bool next_line(lines *l)
     return true;
 }
 
-static ris_result expected(const lines *l, const char *what)
+ris_result ris__lines_expected(const ris_lines *l, const char *what)
 {
     int length = (int)(l->stop - l->at < 24 ? l->stop - l->at : 24);
     return ris_fail(l->err, RIS_ERROR_DATA, "%s:%u:%d: expected %s, found \"%.*s\"", l->name, l->line,
                     (int)(l->at - l->start) + 1, what, length, l->at);
 }
 
-static ris_result wrong_count(const lines *l, uint32_t wanted, const char *found)
+static ris_result wrong_count(const ris_lines *l, uint32_t wanted, const char *found)
 {
     return ris_fail(l->err, RIS_ERROR_DATA, "%s:%u:1: expected one row for each of the %u vertices, found %s",
                     l->name, l->line + 1, wanted, found);
 }
 
-/* A number within the range that is followed by the separator (0 = the end of the line). */
-static ris_result read_field(lines *l, const char *what, double minimum, double maximum, char separator,
+ris_result ris__lines_header(ris_lines *l, const char *header)
+{
+    if (!ris__lines_next(l) || (size_t)(l->stop - l->start) != strlen(header) ||
+        memcmp(l->start, header, strlen(header)) != 0) {
+        return ris_fail(l->err, RIS_ERROR_DATA, "%s:1:1: expected the header \"%s\"", l->name, header);
+    }
+    return RIS_OK;
+}
+
+ris_result ris__lines_number(ris_lines *l, const char *what, double minimum, double maximum, char separator,
                              float *out)
 {
     double value;
     const char *after = ris__parse_number(l->at, l->stop, &value);
     if (!after || !(value >= minimum && value <= maximum)) {
-        return expected(l, what);
+        return ris__lines_expected(l, what);
     }
     l->at = after;
     if (separator ? l->at >= l->stop || *l->at != separator : l->at != l->stop) {
-        return expected(l, separator ? "a comma" : "the end of the line");
+        return ris__lines_expected(l, separator ? "a comma" : "the end of the line");
     }
     l->at += separator != 0;
     *out = (float)value;
     return RIS_OK;
 }
 
-static ris_result read_row(lines *l, uint32_t vertex, ris_head *head)
+static ris_result read_row(ris_lines *l, uint32_t vertex, ris_head *head)
 {
     int64_t index;
     ris_result result;
@@ -72,22 +72,23 @@ static ris_result read_row(lines *l, uint32_t vertex, ris_head *head)
     const char *after = ris__parse_integer(l->at, l->stop, &index);
     if (!after || index != (int64_t)vertex || after >= l->stop || *after != ',') {
         snprintf(what, sizeof what, "vertex %u and a comma", vertex);
-        return expected(l, what);
+        return ris__lines_expected(l, what);
     }
     l->at = after + 1;
-    if ((result = read_field(l, "a depth of 0 to 100 mm", 0, MAX_DEPTH_MM, ',', &head->depth_mm[vertex]))) {
+    if ((result =
+             ris__lines_number(l, "a depth of 0 to 100 mm", 0, MAX_DEPTH_MM, ',', &head->depth_mm[vertex]))) {
         return result;
     }
-    return read_field(l, "a jaw weight of 0 to 1", 0, 1, 0, &head->jaw_weight[vertex]);
+    return ris__lines_number(l, "a jaw weight of 0 to 1", 0, 1, 0, &head->jaw_weight[vertex]);
 }
 
 ris_result ris__depth_read(const char *name, const char *text, size_t size, ris_head *head, ris_error *err)
 {
-    lines l = {.name = name, .next = text, .end = text + size, .err = err};
+    ris_lines l = {.name = name, .next = text, .end = text + size, .err = err};
     uint32_t count = head->skin.vertex_count;
-    if (!next_line(&l) || (size_t)(l.stop - l.start) != strlen(CSV_HEADER) ||
-        memcmp(l.start, CSV_HEADER, strlen(CSV_HEADER)) != 0) {
-        return ris_fail(err, RIS_ERROR_DATA, "%s:1:1: expected the header \"" CSV_HEADER "\"", name);
+    ris_result header = ris__lines_header(&l, CSV_HEADER);
+    if (header != RIS_OK) {
+        return header;
     }
     head->depth_mm = malloc(count * sizeof *head->depth_mm);
     head->jaw_weight = malloc(count * sizeof *head->jaw_weight);
@@ -95,7 +96,7 @@ ris_result ris__depth_read(const char *name, const char *text, size_t size, ris_
         return ris_fail(err, RIS_ERROR_MEMORY, "%s: no memory for %u vertices", name, count);
     }
     for (uint32_t v = 0; v < count; v++) {
-        if (!next_line(&l)) {
+        if (!ris__lines_next(&l)) {
             return wrong_count(&l, count, "the end of the file");
         }
         ris_result result = read_row(&l, v, head);
@@ -103,12 +104,12 @@ ris_result ris__depth_read(const char *name, const char *text, size_t size, ris_
             return result;
         }
     }
-    return next_line(&l) ? wrong_count(&l, count, "more") : RIS_OK;
+    return ris__lines_next(&l) ? wrong_count(&l, count, "more") : RIS_OK;
 }
 
 ris_result ris__map_read(const char *name, const char *text, size_t size, ris_head *head, ris_error *err)
 {
-    lines l = {.name = name, .next = text, .end = text + size, .err = err};
+    ris_lines l = {.name = name, .next = text, .end = text + size, .err = err};
     uint32_t count = head->skin.vertex_count;
     head->base_vertex = malloc(count * sizeof *head->base_vertex);
     if (!head->base_vertex) {
@@ -116,14 +117,14 @@ ris_result ris__map_read(const char *name, const char *text, size_t size, ris_he
     }
     for (uint32_t v = 0; v < count; v++) {
         int64_t index;
-        if (!next_line(&l)) {
+        if (!ris__lines_next(&l)) {
             return wrong_count(&l, count, "the end of the file");
         }
         const char *after = ris__parse_integer(l.at, l.stop, &index);
         if (!after || after != l.stop || index < -1 || index > INT32_MAX) {
-            return expected(&l, "a base vertex or -1");
+            return ris__lines_expected(&l, "a base vertex or -1");
         }
         head->base_vertex[v] = (int32_t)index;
     }
-    return next_line(&l) ? wrong_count(&l, count, "more") : RIS_OK;
+    return ris__lines_next(&l) ? wrong_count(&l, count, "more") : RIS_OK;
 }

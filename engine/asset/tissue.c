@@ -1,4 +1,4 @@
-/* Tissue and jaw of head.json: KA-05, KA-10..18, KA-33 and the default tissue of docs/physics.md. */
+/* Tissue of head.json: KA-10..18, KA-33 and the default tissue of docs/physics.md. */
 #include "asset/head_parts.h"
 #include "asset/names.h"
 #include "base/text.h"
@@ -173,35 +173,5 @@ ris_result ris__tissue_read(const ris_json_at *at, ris_head *head, ris_error *er
     }
     t->model = (ris_tissue_model)model;
     t->continuous = law == 0;
-    return RIS_OK;
-}
-
-ris_result ris__jaw_read(const ris_json_at *at, ris_head *head, ris_error *err)
-{
-    static const char *const keys[] = {"point", "axis", "open_deg", "forward_mm", "back_mm", "side_mm", NULL};
-    ris_jaw_def *jaw = &head->jaw;
-    float point[3] = {0}, axis[3] = {0};
-    ris_result result;
-    *jaw = (ris_jaw_def){.open_deg = 20, .forward_mm = 8, .back_mm = 3, .side_mm = 6};
-    if ((result = ris__json_check_object(at, keys, err))) {
-        return result;
-    }
-    ris_json_at point_at = ris__json_key(at, "point"), axis_at = ris__json_key(at, "axis");
-    ris_json_at open = ris__json_key(at, "open_deg"), forward = ris__json_key(at, "forward_mm");
-    ris_json_at back = ris__json_key(at, "back_mm"), side = ris__json_key(at, "side_mm");
-    if ((result = ris__json_floats(&point_at, RIS_JSON_REQUIRED, 3, -1000, 1000, point, err)) ||
-        (result = ris__json_floats(&axis_at, RIS_JSON_REQUIRED, 3, -1000, 1000, axis, err)) ||
-        (result = ris__json_float(&open, RIS_JSON_OPTIONAL, 0, 60, &jaw->open_deg, err)) ||
-        (result = ris__json_float(&forward, RIS_JSON_OPTIONAL, 0, 50, &jaw->forward_mm, err)) ||
-        (result = ris__json_float(&back, RIS_JSON_OPTIONAL, 0, 50, &jaw->back_mm, err)) ||
-        (result = ris__json_float(&side, RIS_JSON_OPTIONAL, 0, 50, &jaw->side_mm, err))) {
-        return result;
-    }
-    double length = sqrt((double)axis[0] * axis[0] + (double)axis[1] * axis[1] + (double)axis[2] * axis[2]);
-    if (length < 1e-3) {
-        return ris__json_expected(&axis_at, err, "a direction");
-    }
-    jaw->point = (ris_vec3){point[0], point[1], point[2]};
-    jaw->axis = (ris_vec3){(float)(axis[0] / length), (float)(axis[1] / length), (float)(axis[2] / length)};
     return RIS_OK;
 }

@@ -91,3 +91,10 @@ bool ris__bvh_inside(const bvh *tree, dvec p);
 int32_t ris__bvh_winding(const bvh *tree, dvec p);
 /* Distance to the surface, positive inside. */
 double ris__bvh_depth(const bvh *tree, dvec p);
+
+/* p where place (row-major 3x4: rotation and shift, as ris_sim_bone_transform gives it) puts it. */
+dvec ris__place(const float place[12], dvec p);
+/* Edges of one closed mesh that pierce the other, both ways, the first of them placed; counts up to stop. */
+uint32_t ris__bvh_crossings(const bvh *moved, const float place[12], const bvh *still, uint32_t stop);
+/* Least distance of a vertex of either from the surface of the other. */
+double ris__bvh_gap(const bvh *moved, const float place[12], const bvh *still);

@@ -190,8 +190,9 @@ ris_result ris_scene_head(const ris_scene_def *def, ris_head *out, ris_error *er
                         def->rows, (double)def->spacing_mm, (double)def->radius_mm);
     }
     out->tissue = def->tissue;
-    out->jaw = (ris_jaw_def){
-        .point = {0, 15, 0}, .axis = {1, 0, 0}, .open_deg = 20, .forward_mm = 8, .back_mm = 3, .side_mm = 6};
+    out->jaw = ris_default_jaw();
+    out->jaw.point = v3(0, 15, 0);
+    out->jaw.incisor = v3(0, -28, 76);
     snprintf(out->simulated, sizeof out->simulated, "face");
     ris_result result = make_mesh(def, &out->skin, err);
     if (result == RIS_OK) {

@@ -1,5 +1,5 @@
-/* jaw_pose, first stage of a tick: KA-05 jaw rotation with the translations of jaw.forward and jaw.side,
- * and the rigid poses of eyes and head (KA-06, KA-48). Cosine and sine come from fixed series in double:
+/* jaw_pose, first stage of a tick: KA-05 jaw rotation, in the default tissue along the path of the joint
+ * (jaw_path.c), and the rigid poses of eyes and head (KA-06, KA-48). Cosine and sine come from fixed series in double:
  * the same bits on every machine. */
 #include "sim/rig.h"
 
@@ -56,6 +56,17 @@ ris_vec3 ris__rigid_apply(const ris_rigid *rigid, ris_vec3 x)
     return v3_add(v3_add(ris__rigid_rotate(rigid, v3_sub(x, rigid->point)), rigid->point), rigid->shift);
 }
 
+void ris__rigid_matrix(const ris_rigid *rigid, float out[12])
+{
+    const ris_vec3 turned = ris__rigid_rotate(rigid, rigid->point);
+    const ris_vec3 t = v3_add(v3_sub(rigid->point, turned), rigid->shift);
+    const float translation[3] = {t.x, t.y, t.z};
+    for (int r = 0; r < 3; ++r) {
+        memcpy(out + 4 * r, rigid->rotation + 3 * r, 3 * sizeof *out);
+        out[4 * r + 3] = translation[r];
+    }
+}
+
 static ris_vec3 part_pivot(const ris_head *head, ris_bone bone)
 {
     for (uint32_t k = 0; k < head->part_count; ++k) {
@@ -90,15 +101,23 @@ static ris_rigid yaw_pitch_roll(ris_vec3 point, float yaw, float pitch, float ro
     return turn_after(ris__rigid_turn(point, v3(0, 1, 0), (double)yaw * rad), r);
 }
 
+/* The thesis turns the jaw about a fixed axis (KA-05); its shifts are ours. */
+static ris_rigid turn_and_shift(const ris_jaw_def *def, float open, float forward, float side)
+{
+    ris_rigid jaw = ris__rigid_turn(def->point, def->axis, (double)open * (double)def->open_deg * PI / 180.0);
+    jaw.shift = v3(def->side_mm * side, 0.0f, forward * (forward < 0.0f ? def->back_mm : def->forward_mm));
+    jaw.identity = open == 0.0f && side == 0.0f && forward == 0.0f;
+    return jaw;
+}
+
 static void pose_jaw(ris_rig *rig, const float *beside)
 {
-    const ris_jaw_def *def = &rig->model->head->jaw;
-    const float forward = beside[RIS__JAW_FORWARD];
-    rig->jaw = ris__rigid_turn(def->point, def->axis,
-                               (double)beside[RIS__JAW_OPEN] * (double)def->open_deg * PI / 180.0);
-    rig->jaw.shift = v3(def->side_mm * beside[RIS__JAW_SIDE], 0.0f,
-                        forward * (forward < 0.0f ? def->back_mm : def->forward_mm));
-    rig->jaw.identity = beside[RIS__JAW_OPEN] == 0.0f && beside[RIS__JAW_SIDE] == 0.0f && forward == 0.0f;
+    const ris_head *head = rig->model->head;
+    const float open = beside[RIS__JAW_OPEN], forward = beside[RIS__JAW_FORWARD],
+                side = beside[RIS__JAW_SIDE];
+    rig->jaw = rig->model->push.flags & RIS_TISSUE_FLAG_KAEHLER
+                   ? turn_and_shift(&head->jaw, open, forward, side)
+                   : ris__jaw_path(&head->jaw, &head->guidance, open, forward, side);
 }
 
 void ris__jaw_pose(ris_rig *rig, const float *pose)

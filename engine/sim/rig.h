@@ -91,8 +91,15 @@ void ris__muscle_shape(const ris_rig *rig, ris_vec3 *point, ris_segment *segment
 void ris__cos_sin(double angle_rad, double *out_cos, double *out_sin);
 /* KA-05. Rotation by angle_rad about the unit axis through point. */
 ris_rigid ris__rigid_turn(ris_vec3 point, ris_vec3 axis, double angle_rad);
+/* The mandible for values of jaw.open, jaw.forward and jaw.side: condyles on the eminences, teeth that guide. */
+ris_rigid ris__jaw_path(const ris_jaw_def *def, const ris_guidance *guidance, float open, float forward,
+                        float side);
+/* Least opening, degrees, at which the teeth pass forward_mm ahead and at side (0..1). */
+double ris__jaw_guidance(const ris_guidance *guidance, double forward_mm, double side);
 ris_vec3 ris__rigid_apply(const ris_rigid *rigid, ris_vec3 x);
 ris_vec3 ris__rigid_rotate(const ris_rigid *rigid, ris_vec3 v);
+/* The same as a row-major 3x4. */
+void ris__rigid_matrix(const ris_rigid *rigid, float out[12]);
 /* KA-31. n points of a fibre at rest, contraction c, result q (n). */
 void ris__contract_linear(const ris_vec3 *p, uint32_t n, float c, ris_vec3 *q);
 /* KA-32. Point p of fibre j of f (0 outermost), axis a0-a1, position a on it. */

@@ -284,34 +284,23 @@ const char *ris_sim_backend(const ris_sim *sim)
     return sim->backend;
 }
 
-static void write_transform(const ris_rigid *rigid, float out[12])
-{
-    const ris_vec3 turned = ris__rigid_rotate(rigid, rigid->point);
-    const ris_vec3 t = v3_add(v3_sub(rigid->point, turned), rigid->shift);
-    const float translation[3] = {t.x, t.y, t.z};
-    for (int r = 0; r < 3; ++r) {
-        memcpy(out + 4 * r, rigid->rotation + 3 * r, 3 * sizeof *out);
-        out[4 * r + 3] = translation[r];
-    }
-}
-
 void ris_sim_bone_transform(const ris_sim *sim, ris_bone bone, float out[12])
 {
     static const ris_rigid skull = {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}, {0, 0, 0}, true};
     switch (bone) {
-    case RIS_BONE_JAW: write_transform(&sim->rig.jaw, out); return;
-    case RIS_BONE_EYE_L: write_transform(&sim->rig.eye[0], out); return;
-    case RIS_BONE_EYE_R: write_transform(&sim->rig.eye[1], out); return;
+    case RIS_BONE_JAW: ris__rigid_matrix(&sim->rig.jaw, out); return;
+    case RIS_BONE_EYE_L: ris__rigid_matrix(&sim->rig.eye[0], out); return;
+    case RIS_BONE_EYE_R: ris__rigid_matrix(&sim->rig.eye[1], out); return;
     case RIS_BONE_AUTO:
     case RIS_BONE_SKULL:
     case RIS_BONE_SKIN: break;
     }
-    write_transform(&skull, out);
+    ris__rigid_matrix(&skull, out);
 }
 
 void ris_sim_head_transform(const ris_sim *sim, float out[12])
 {
-    write_transform(&sim->rig.head, out);
+    ris__rigid_matrix(&sim->rig.head, out);
 }
 
 void ris_sim_muscles(const ris_sim *sim, ris_vec3 *point, ris_segment *segment)

@@ -126,8 +126,7 @@ ris_model *random_model_create(uint32_t node_count, uint32_t flags, uint32_t see
     head = (ris_head *)model->head;
     head->tissue = ris_default_tissue();
     head->tissue.substeps = 8;
-    head->jaw = (ris_jaw_def){
-        .axis = {1.0f, 0.0f, 0.0f}, .open_deg = 20.0f, .forward_mm = 8.0f, .back_mm = 3.0f, .side_mm = 6.0f};
+    head->jaw = ris_default_jaw();
     for (uint32_t c = 0; c < model->channel_count; c++) {
         strncpy(model->channel[c].name, ris__beside_channel[c].name, RIS_NAME_SIZE - 1);
         model->channel[c].minimum = ris__beside_channel[c].minimum;

@@ -238,6 +238,13 @@ static void test_refuses_head_json(void **state)
                    "jaw.axis: expected a direction");
     expect_refused("head.json", HEAD_START ",\"jaw\":{\"point\":[0,0,0],\"axis\":[1,0,0],\"open_deg\":90}}",
                    "jaw.open_deg: expected a number of 0 to 60, found 90");
+    expect_refused("head.json",
+                   HEAD_START ",\"jaw\":{\"point\":[0,0,0],\"axis\":[1,0,0],\"eminence_deg\":80}}",
+                   "jaw.eminence_deg: expected a number of 0 to 75, found 80");
+    expect_refused("head.json",
+                   HEAD_START
+                   ",\"jaw\":{\"point\":[0,0,0],\"axis\":[1,0,0],\"eminence_mm\":7,\"forward_mm\":8}}",
+                   "jaw.forward_mm: expected a number of 0 to 7, found 8");
     expect_refused("head.json", HEAD_START JAW ",\"tissue\":{\"modulus\":[5,1]}}",
                    "tissue.modulus: expected the low modulus first");
     expect_refused("head.json", HEAD_START JAW ",\"tissue\":{\"mass_g\":0}}",
@@ -288,6 +295,48 @@ static void test_refuses_regions(void **state)
                    "face[0]: expected an array of 2, found an array of 1");
     expect_refused("regions.json", "{\"Face\":[[0,1]]}", "expected a region name in snake_case");
     expect_refused("regions.json", "{\"fac\":[[0,5]]}", "simulated: unknown region \"face\"; nearest: fac");
+}
+
+/* The border of the closed jaw: a grid that is kept, and every way in which it can be none. */
+static void test_guidance(void **state)
+{
+    (void)state;
+    static const char start[] = "forward_mm,side,open_deg\n";
+    static const struct {
+        const char *rows, *says;
+    } wrong[] = {
+        {"0,0,0\n0,1\n", "guidance.csv:3:4: expected a comma"},
+        {"0,0,0\n0,2,1\n", "guidance.csv:3:3: expected a side of 0 to 1, found \"2,1\""},
+        {"0,0,0\n0,1,99\n", "guidance.csv:3:5: expected an opening of -30 to 60 degrees"},
+        {"-1,0,0\n-1,1,0\n0,0,0\n0,0.5,1\n",
+         "guidance.csv:5:1: expected the next place of a full ascending grid"},
+        {"0,0,0\n0,1,0\n-1,0,0\n-1,1,0\n", "guidance.csv:4:1: expected the next place"},
+        {"0,0,0\n0,1,0\n1,0,0\n", "guidance.csv: expected a full grid of at least 2 steps forward by 2"},
+        {"0,0,0\n0,1,0\n", "guidance.csv: expected a full grid"},
+        {"0,0,0.5\n0,1,0\n1,0,0\n1,1,0\n", "guidance.csv: expected the row \"0,0,0\" of the closed jaw"},
+    };
+    ris_head head;
+    write_head();
+    scratch_write("guidance.csv",
+                  "forward_mm,side,open_deg\n-1,0,0.5\n-1,1,1\n0,0,0\n0,1,2\n4,0,-1\n4,1,-2.5\n");
+    scratch_write("head.json", HEAD_START JAW ",\"guidance\":\"guidance.csv\"}");
+    expect_loads(&head);
+    assert_true(head.guidance.forward_count == 3 && head.guidance.side_count == 2 &&
+                head.guidance.forward_mm[2] == 4 && head.guidance.side[1] == 1 &&
+                head.guidance.open_deg[5] == -2.5f);
+    ris_head_finish(&head);
+    for (size_t k = 0; k < sizeof wrong / sizeof wrong[0]; k++) {
+        char text[256];
+        ris_error err = {0};
+        snprintf(text, sizeof text, "%s%s", start, wrong[k].rows);
+        scratch_write("guidance.csv", text);
+        expect_error(&err, ris_head_load(scratch_folder, &head, &err), RIS_ERROR_DATA, wrong[k].says);
+    }
+    scratch_write("guidance.csv", "forward,side,open_deg\n");
+    ris_error err = {0};
+    expect_error(&err, ris_head_load(scratch_folder, &head, &err), RIS_ERROR_DATA,
+                 "guidance.csv:1:1: expected the header \"forward_mm,side,open_deg\"");
+    write_head();
 }
 
 static void test_refuses_tables(void **state)
@@ -411,11 +460,17 @@ static void test_refuses_expressions(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_loads),           cmocka_unit_test(test_mirrored_muscle),
-        cmocka_unit_test(test_muscle_keys),     cmocka_unit_test(test_tissue),
-        cmocka_unit_test(test_refuses_files),   cmocka_unit_test(test_refuses_head_json),
-        cmocka_unit_test(test_refuses_regions), cmocka_unit_test(test_refuses_tables),
-        cmocka_unit_test(test_refuses_muscles), cmocka_unit_test(test_refuses_expressions),
+        cmocka_unit_test(test_loads),
+        cmocka_unit_test(test_mirrored_muscle),
+        cmocka_unit_test(test_muscle_keys),
+        cmocka_unit_test(test_tissue),
+        cmocka_unit_test(test_refuses_files),
+        cmocka_unit_test(test_refuses_head_json),
+        cmocka_unit_test(test_guidance),
+        cmocka_unit_test(test_refuses_regions),
+        cmocka_unit_test(test_refuses_tables),
+        cmocka_unit_test(test_refuses_muscles),
+        cmocka_unit_test(test_refuses_expressions),
     };
     return cmocka_run_group_tests(tests, scratch_setup, scratch_teardown);
 }

@@ -82,10 +82,25 @@ typedef struct ris_part_def {
     ris_vec3 tint; /* linear RGB when there is no texture */
 } ris_part_def;
 
+/* The joint of the jaw (KA-05, and its path: docs/physics.md, jaw_pose). */
 typedef struct ris_jaw_def {
     ris_vec3 point, axis; /* mm, unit; positive turn opens */
     float open_deg, forward_mm, back_mm, side_mm;
+    ris_vec3 incisor; /* mm, between the edges of the lower middle incisors */
+    float condyle_mm; /* from point to the middle of a condyle */
+    float eminence_deg,
+        eminence_mm; /* slope of the articular eminence where it begins, way forward to its crest */
+    float slide_mm, slide_start; /* way of the condyles when opened, and the opening at which it begins */
+    float bennett_mm;            /* shift of the whole jaw to the working side */
 } ris_jaw_def;
+
+/* Least opening at which the teeth pass each other, over the way forward and jaw.side without its sign. */
+typedef struct ris_guidance {
+    uint32_t forward_count, side_count; /* 0 = the teeth do not guide */
+    float *forward_mm;                  /* ascending (forward_count) */
+    float *side;                        /* 0..1, ascending (side_count) */
+    float *open_deg;                    /* (forward_count x side_count) */
+} ris_guidance;
 
 typedef enum ris_landmark_mesh {
     RIS_LANDMARK_SKIN,
@@ -165,11 +180,14 @@ typedef struct ris_head {
     uint32_t part_count;
     ris_part_def *part;
     ris_jaw_def jaw;
+    ris_guidance guidance;
     ris_tissue_def tissue;
     uint32_t expression_count;
     ris_expression *expression;
 } ris_head;
 
+/* A jaw with the default path, its hinge through the origin. */
+ris_jaw_def ris_default_jaw(void);
 /* Default tissue: docs/physics.md, with thesis numbers for the kaehler fields. */
 ris_tissue_def ris_default_tissue(void);
 
