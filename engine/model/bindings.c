@@ -36,6 +36,7 @@ typedef struct binder {
     const float *arc; /* arc-length parameter of each fibre point */
     uint8_t *lip;     /* per node: LIP_UPPER, LIP_LOWER bits */
     uint8_t *muscle_lip;
+    bool *lining;         /* per node: the mouth's lining, which follows the lips */
     uint8_t *muscle_node; /* explicit attach lists (muscle_count x node_count), NULL if none */
     size_t binding_room, attach_room;
 } binder;
@@ -52,6 +53,9 @@ static touch meet_segment(const binder *b, uint32_t m, uint32_t fiber, uint32_t 
     t.local.x = f_clamp(v3_dot(rel, segment->along) / segment->size.x, -0.5f, 0.5f);
     t.local.z = f_clamp(v3_dot(rel, segment->wide) / segment->size.z, -0.5f, 0.5f);
     t.local.y = v3_dot(rel, segment->up) < 0.0f ? -0.5f : 0.5f;
+    if (b->bake->head->tissue.model != RIS_TISSUE_KAEHLER) { /* a lip goes round the muscle: no jump */
+        t.local.y = f_clamp(v3_dot(rel, segment->up) / segment->size.y, -0.5f, 0.5f);
+    }
     ris_vec3 on_sheet = v3_mad(segment->origin, t.local.x * segment->size.x, segment->along);
     on_sheet = v3_mad(on_sheet, t.local.z * segment->size.z, segment->wide);
     const ris_vec3 d = v3_sub(x, on_sheet);
@@ -68,6 +72,9 @@ static touch meet_segment(const binder *b, uint32_t m, uint32_t fiber, uint32_t 
 static bool may_bind(const binder *b, uint32_t m, uint32_t node)
 {
     const uint8_t lip = b->muscle_lip[m];
+    if (b->lining[node]) {
+        return false;
+    }
     if ((lip == LIP_UPPER && b->lip[node] == LIP_LOWER) || (lip == LIP_LOWER && b->lip[node] == LIP_UPPER)) {
         return false;
     }
@@ -184,6 +191,9 @@ static ris_result bind_blended(binder *b, uint32_t m, uint32_t node, ris_error *
     }
     const float ratio = f_min(beyond / muscle->radius_mm, 1.0f), bell = 1.0f - ratio * ratio;
     float weight = bell * bell * f_clamp(facing / FACING_FULL, 0.0f, 1.0f);
+    if (b->lip[node] && muscle->kind == RIS_MUSCLE_SPHINCTER) {
+        weight = 1.0f; /* the red of a lip is rolled round the muscle within it */
+    }
     if (muscle->kind == RIS_MUSCLE_LINEAR) {
         float start = muscle->insertion_start;
         /* a muscle of the face does not move the lining of the mouth behind it */
@@ -275,18 +285,24 @@ static uint32_t nearest_node(const ris_model *model, ris_vec3 p)
     return nearest;
 }
 
-/* Lips of the nodes by region; lips of a muscle by the nodes nearest to its grid. */
+/* Lips and lining of the nodes by region; lips of a muscle by the nodes nearest to its grid. */
 static ris_result sort_lips(binder *b, ris_error *err)
 {
     const ris_model *model = b->bake->model;
     const ris_head *head = b->bake->head;
     ris_result result = ris__model_alloc(&b->lip, model->node_count, sizeof *b->lip, "lip flags", err);
     if (result == RIS_OK) {
+        result = ris__model_alloc(&b->lining, model->node_count, sizeof *b->lining, "lip flags", err);
+    }
+    if (result == RIS_OK) {
         result =
             ris__model_alloc(&b->muscle_lip, model->muscle_count, sizeof *b->muscle_lip, "lip flags", err);
     }
     if (result != RIS_OK) {
         return result;
+    }
+    if (model->lining_count > 0) {
+        ris__region_flags(head, "mouth_cavity", b->lining);
     }
     const ris_region *upper = ris_head_region(head, "lip_upper"), *lower = ris_head_region(head, "lip_lower");
     for (uint32_t k = 0; upper && k < upper->count; ++k) {
@@ -305,7 +321,7 @@ static ris_result sort_lips(binder *b, ris_error *err)
         }
         /* a muscle of both corners of the mouth belongs to both lips */
         b->muscle_lip[m] = votes[0] > 2 * votes[1] ? LIP_UPPER : votes[1] > 2 * votes[0] ? LIP_LOWER : 0;
-        if (def->lip_drag_power > 0.0f) {
+        if (def->kind == RIS_MUSCLE_LINEAR && def->lip_drag_power > 0.0f) {
             b->muscle_lip[m] = 0;
         }
     }
@@ -398,6 +414,7 @@ ris_result ris__bake_bindings(ris_bake *bake, ris_error *err)
     free(arc);
     free(b.lip);
     free(b.muscle_lip);
+    free(b.lining);
     free(b.muscle_node);
     return result;
 }

@@ -28,44 +28,75 @@ static ris_vec3 attached_point(const ris_rig *rig, const ris_muscle *muscle, con
                               rig->bulge[attach->segment], attach->local);
 }
 
-/* Adds what one binding moves its node by, and the weight it does so with. */
+/* How much a node of a ring counts as dragged by a corner of the mouth, 0..1; full is what the whole ring
+ * does. */
+static float dragged(const ris_rig *rig, const ris_binding *binding, float *full)
+{
+    float share = 0.0f;
+    for (uint32_t end = 0; end < 2; ++end) {
+        const ris_drag *drag = &rig->drag[2 * (size_t)binding->muscle + end];
+        const float t = end ? 2.0f * binding->along - 1.0f : 1.0f - 2.0f * binding->along;
+        *full = f_max(*full, drag->strength);
+        if (drag->strength > 0.0f && t > 0.0f) {
+            share = drag->strength * ris__power(t, drag->power);
+        }
+    }
+    return share;
+}
+
+/* Adds what one binding moves its node by, and the weight it does so with. A ring that is only dragged weighs
+ * little in the middle of its lip, where other muscles rule. */
 static void add_binding(const ris_rig *rig, const ris_binding *binding, ris_vec3 *sum, float *total)
 {
     const ris_model *model = rig->model;
     const ris_muscle *muscle = &model->muscle[binding->muscle];
-    const float activity = rig->activity[binding->muscle];
-    if (activity > 0.0f && muscle->max_shortening > 0.0f) {
-        ris_vec3 delta = {0};
-        for (uint32_t k = 0; k < binding->attach_count; ++k) {
-            const ris_attach *attach = &model->attach[binding->first_attach + k];
-            delta = v3_mad(delta, attach->share, v3_sub(attached_point(rig, muscle, attach), attach->rest));
-        }
-        const float w = binding->weight * activity;
-        *sum = v3_mad(*sum, w, delta);
-        *total += w;
+    float activity = muscle->max_shortening > 0.0f ? rig->activity[binding->muscle] : 0.0f;
+    float weight = activity;
+    if (muscle->kind == RIS_MUSCLE_SPHINCTER) {
+        weight = f_max(weight, dragged(rig, binding, &activity));
     }
-    for (uint32_t end = 0; muscle->kind == RIS_MUSCLE_SPHINCTER && end < 2; ++end) {
-        const ris_drag *drag = &rig->drag[2 * (size_t)binding->muscle + end];
-        const float t = end ? 2.0f * binding->along - 1.0f : 1.0f - 2.0f * binding->along;
-        if (drag->strength > 0.0f && t > 0.0f) {
-            const float w = binding->weight * drag->strength * ris__power(t, drag->power);
-            *sum = v3_mad(*sum, w, drag->displacement);
-            *total += w;
+    if (!(activity > 0.0f)) {
+        return;
+    }
+    ris_vec3 delta = {0};
+    for (uint32_t k = 0; k < binding->attach_count; ++k) {
+        const ris_attach *attach = &model->attach[binding->first_attach + k];
+        delta = v3_mad(delta, attach->share, v3_sub(attached_point(rig, muscle, attach), attach->rest));
+    }
+    *sum = v3_mad(*sum, binding->weight * activity, delta);
+    *total += binding->weight * weight;
+}
+
+static ris_vec3 muscle_move(const ris_rig *rig, uint32_t i)
+{
+    const ris_model *model = rig->model;
+    ris_vec3 sum = {0};
+    float total = 0.0f;
+    for (uint32_t b = model->binding_start[i]; b < model->binding_start[i + 1]; ++b) {
+        add_binding(rig, &model->binding[b], &sum, &total);
+    }
+    return v3_scale(sum, 1.0f / f_max(total, 1.0f));
+}
+
+/* The lining of the mouth goes with the lips before it. */
+static void follow_lips(ris_rig *rig)
+{
+    const ris_model *model = rig->model;
+    for (uint32_t k = 0; k < model->lining_count; ++k) {
+        const ris_lining_node *node = &model->lining[k];
+        ris_vec3 sum = {0};
+        for (uint32_t s = 0; s < node->source_count; ++s) {
+            sum = v3_add(sum, rig->move[node->source[s]]);
         }
+        rig->move[node->node] = v3_scale(sum, node->keep);
     }
 }
 
 static void attach_default(ris_rig *rig, uint32_t i)
 {
     const ris_model *model = rig->model;
-    ris_vec3 sum = {0}, normal = v4_xyz(model->rest_normal[i]), target = v4_xyz(model->rest_position[i]);
-    float total = 0.0f;
-    for (uint32_t b = model->binding_start[i]; b < model->binding_start[i + 1]; ++b) {
-        add_binding(rig, &model->binding[b], &sum, &total);
-    }
-    if (total > 0.0f) {
-        target = v3_mad(target, 1.0f / f_max(total, 1.0f), sum);
-    }
+    ris_vec3 normal = v4_xyz(model->rest_normal[i]);
+    ris_vec3 target = v3_add(v4_xyz(model->rest_position[i]), rig->move[i]);
     const float jaw = model->jaw_weight[i];
     if (!rig->jaw.identity && jaw > 0.0f) {
         target = v3_lerp(target, ris__rigid_apply(&rig->jaw, target), jaw);
@@ -106,6 +137,12 @@ void ris__muscle_attach(ris_rig *rig)
 {
     const ris_model *model = rig->model;
     const bool kaehler = (model->push.flags & RIS_TISSUE_FLAG_KAEHLER) != 0;
+    for (uint32_t i = 0; !kaehler && i < model->node_count; ++i) {
+        if (model->rest_position[i].w > 0.0f) {
+            rig->move[i] = muscle_move(rig, i);
+        }
+    }
+    follow_lips(rig);
     for (uint32_t i = 0; i < model->node_count; ++i) {
         if (!(model->rest_position[i].w > 0.0f)) {
             continue;

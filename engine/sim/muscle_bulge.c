@@ -5,6 +5,7 @@
 
 #define NU_CONTRACT 5.0f
 #define NU_STRETCH 1.0f
+#define NU_LIP 1.0f /* default tissue: what keeps the volume of a contracting lip, and does not blow it up */
 #define SMALLEST 0.1f
 
 float ris__bulge_factor(ris_muscle_kind kind, float rho, uint32_t i, uint32_t count)
@@ -30,15 +31,18 @@ static float length_of(const ris_vec3 *p, uint32_t n)
 void ris__muscle_bulge(ris_rig *rig)
 {
     const ris_model *model = rig->model;
+    const bool kaehler = (model->push.flags & RIS_TISSUE_FLAG_KAEHLER) != 0;
     for (uint32_t m = 0; m < model->muscle_count; ++m) {
         const ris_muscle *muscle = &model->muscle[m];
+        const bool lip = !kaehler && muscle->kind == RIS_MUSCLE_SPHINCTER && !muscle->def->closes_on_line;
         for (uint32_t f = 0; f < muscle->fiber_count; ++f) {
             const ris_fiber *fiber = &model->fiber[muscle->first_fiber + f];
             const float rho = length_of(rig->q + fiber->first_point, muscle->point_count) /
                               length_of(rig->p + fiber->first_point, muscle->point_count);
             for (uint32_t s = 0; s + 1 < muscle->point_count; ++s) {
                 rig->bulge[fiber->first_segment + s] =
-                    ris__bulge_factor(muscle->kind, rho, s, muscle->point_count - 1);
+                    lip ? f_max(1.0f + NU_LIP * (1.0f - rho), SMALLEST)
+                        : ris__bulge_factor(muscle->kind, rho, s, muscle->point_count - 1);
             }
         }
     }

@@ -133,9 +133,32 @@ static void resolve_corner(ris_rig *rig, const ris_group *group)
             continue;
         }
         ris_drag *drag = &rig->drag[2 * (size_t)member[k].muscle + (member[k].point > 0)];
-        drag->displacement = corner;
+        drag->displacement = v3_sub(corner, moved[k]);
         drag->power = power / pulling;
         drag->strength = f_min(pulling / ACTIVITY_FULL, 1.0f);
+    }
+}
+
+/* The ends of a ring go where their corners are, the points between them by t^p. */
+static void drag_ring(ris_rig *rig, uint32_t m)
+{
+    const ris_model *model = rig->model;
+    const ris_muscle *muscle = &model->muscle[m];
+    const ris_drag *drag = rig->drag + 2 * (size_t)m;
+    for (uint32_t f = 0; f < muscle->fiber_count; ++f) {
+        const uint32_t first = model->fiber[muscle->first_fiber + f].first_point;
+        float total = 0.0f, length = 0.0f;
+        for (uint32_t i = 1; i < muscle->point_count; ++i) {
+            total += v3_distance(rig->p[first + i], rig->p[first + i - 1]);
+        }
+        for (uint32_t i = 0; i < muscle->point_count; ++i) {
+            length += i > 0 ? v3_distance(rig->p[first + i], rig->p[first + i - 1]) : 0.0f;
+            const float along = 2.0f * length / total - 1.0f;
+            const ris_drag *end = drag + (along > 0.0f);
+            const float t = f_min(along > 0.0f ? along : -along, 1.0f);
+            rig->q[first + i] =
+                v3_mad(rig->q[first + i], end->strength * ris__power(t, end->power), end->displacement);
+        }
     }
 }
 
@@ -149,6 +172,12 @@ void ris__muscle_constrain(ris_rig *rig)
             resolve_literal(rig, &model->group[g]);
         } else {
             resolve_corner(rig, &model->group[g]);
+        }
+    }
+    for (uint32_t m = 0; !literal && m < model->muscle_count; ++m) {
+        if (model->muscle[m].kind == RIS_MUSCLE_SPHINCTER &&
+            (rig->drag[2 * (size_t)m].strength > 0.0f || rig->drag[2 * (size_t)m + 1].strength > 0.0f)) {
+            drag_ring(rig, m);
         }
     }
 }

@@ -3,6 +3,7 @@
  * across the slit between them. */
 #include "sim/rig.h"
 
+#include "model/model_impl.h"
 #include "model/vec3.h"
 
 #include <string.h>
@@ -59,12 +60,37 @@ ris_vec3 ris__contract_slit(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, float c)
     return v3_lerp(p, v3_mad(a0, t, axis), c);
 }
 
+ris_vec3 ris__contract_lip(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, ris_vec3 side, uint32_t j, uint32_t f,
+                           float c)
+{
+    const ris_vec3 axis = v3_unit_or(v3_sub(a1, a0), v3(0, 0, 1)), from = v3_sub(p, a0);
+    const float out = v3_dot(axis, from), goal = v3_distance(a0, a1);
+    const float inner = f > 1 ? (float)j / (float)(f - 1) : 1.0f;
+    const ris_vec3 across = v3_sub(from, v3_scale(axis, out));
+    const ris_vec3 beside = v3_scale(side, v3_dot(side, across)), above = v3_sub(across, beside);
+    ris_vec3 q = v3_mad(p, -c, beside);
+    q = v3_mad(q, -c * (RIS__LIP_ABOVE_OUTER + (RIS__LIP_ABOVE_INNER - RIS__LIP_ABOVE_OUTER) * inner), above);
+    return v3_mad(q, c * (RIS__LIP_OUTER + (1.0f - RIS__LIP_OUTER) * inner) * (goal - out), axis);
+}
+
+/* Unit vector from one end of a sphincter to the other, across its axis; zero for a closed ring. */
+static ris_vec3 ring_side(const ris_model *model, const ris_muscle *muscle)
+{
+    const ris_vec3 none = {0}, axis = v3_unit_or(v3_sub(muscle->axis[1], muscle->axis[0]), none);
+    const ris_vec3 d = v3_sub(ris__muscle_point(model, muscle, model->fiber_point, muscle->point_count - 1),
+                              ris__muscle_point(model, muscle, model->fiber_point, 0));
+    return v3_unit_or(v3_mad(d, -v3_dot(axis, d), axis), none);
+}
+
 /* Point p of fibre f of a sphincter. */
 static ris_vec3 contract_ring(const ris_muscle *muscle, const ris_vec3 axis[2], ris_vec3 p, uint32_t f,
-                              float c)
+                              float c, const ris_vec3 *side)
 {
     if (!(c > 0.0f)) {
         return p;
+    }
+    if (side) {
+        return ris__contract_lip(p, axis[0], axis[1], *side, f, muscle->fiber_count, c);
     }
     return muscle->def->closes_on_line
                ? ris__contract_slit(p, axis[0], axis[1], c)
@@ -87,6 +113,9 @@ void ris__muscle_contract(ris_rig *rig, const float *pose)
             axis[0] = ris__rigid_apply(&rig->jaw, axis[0]);
             axis[1] = ris__rigid_apply(&rig->jaw, axis[1]);
         }
+        const ris_vec3 side = ring_side(model, muscle);
+        const bool lip = !kaehler && muscle->kind == RIS_MUSCLE_SPHINCTER && !muscle->def->closes_on_line &&
+                         v3_dot(side, side) > 0.5f;
         for (uint32_t f = 0; f < muscle->fiber_count; ++f) {
             const uint32_t first = model->fiber[muscle->first_fiber + f].first_point;
             if (muscle->kind == RIS_MUSCLE_LINEAR) {
@@ -94,7 +123,7 @@ void ris__muscle_contract(ris_rig *rig, const float *pose)
                 continue;
             }
             for (uint32_t i = 0; i < muscle->point_count; ++i) {
-                rig->q[first + i] = contract_ring(muscle, axis, rig->p[first + i], f, c);
+                rig->q[first + i] = contract_ring(muscle, axis, rig->p[first + i], f, c, lip ? &side : NULL);
             }
         }
     }

@@ -25,6 +25,7 @@ ris_result ris__rig_init(ris_rig *rig, const ris_model *model, ris_error *err)
         {&rig->drag, 2 * (size_t)model->muscle_count, sizeof *rig->drag},
         {&rig->bulge, model->segment_count, sizeof *rig->bulge},
         {&rig->muscle_jaw, model->fiber_point_count, sizeof *rig->muscle_jaw},
+        {&rig->move, model->node_count, sizeof *rig->move},
         {&rig->target, model->node_count, sizeof *rig->target},
         {&rig->point, model->node_count, sizeof *rig->point},
         {&rig->delta, model->node_count, sizeof *rig->delta},
@@ -65,6 +66,7 @@ void ris__rig_finish(ris_rig *rig)
     free(rig->drag);
     free(rig->bulge);
     free(rig->muscle_jaw);
+    free(rig->move);
     free(rig->target);
     free(rig->point);
     free(rig->delta);
@@ -84,6 +86,7 @@ void ris__rig_reset(ris_rig *rig)
     memset(rig->activation, 0, model->muscle_count * sizeof *rig->activation);
     memset(rig->activity, 0, model->muscle_count * sizeof *rig->activity);
     memset(rig->drag, 0, 2 * (size_t)model->muscle_count * sizeof *rig->drag);
+    memset(rig->move, 0, model->node_count * sizeof *rig->move);
     memset(rig->delta, 0, model->node_count * sizeof *rig->delta);
     memset(rig->lid_move, 0, model->lid_count * sizeof *rig->lid_move);
     for (uint32_t s = 0; s < model->segment_count; ++s) {

@@ -59,6 +59,7 @@ typedef struct ris_rig {
     /* muscle_shape */
     float *muscle_jaw; /* how far each control point turns with the jaw, 0..1 (fiber_point_count); constant */
     /* muscle_attach */
+    ris_vec3 *move;          /* what muscles move the nodes by, mm (node_count) */
     ris_vec3 *target;        /* of the previous tick (node_count) */
     ris_anchor_point *point; /* (node_count) */
     ris_vec4 *delta;         /* (node_count) */
@@ -105,6 +106,14 @@ void ris__contract_linear(const ris_vec3 *p, uint32_t n, float c, ris_vec3 *q);
 /* KA-32. Point p of fibre j of f (0 outermost), axis a0-a1, position a on it. */
 ris_vec3 ris__contract_sphincter(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, float a, uint32_t j, uint32_t f,
                                  float c);
+/* A lip (default tissue): it draws together sideways and comes forward along the axis as a sphincter with
+ * a = 1, the outer fibres by the share RIS__LIP_OUTER of what the inner ones do, but grows thicker. side:
+ * unit, from corner to corner. */
+#define RIS__LIP_OUTER 0.6f
+#define RIS__LIP_ABOVE_OUTER (-0.5f)
+#define RIS__LIP_ABOVE_INNER 0.5f
+ris_vec3 ris__contract_lip(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, ris_vec3 side, uint32_t j, uint32_t f,
+                           float c);
 /* A sphincter that closes on a line: p goes the share c of its way to the nearest point of a0-a1. */
 ris_vec3 ris__contract_slit(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, float c);
 /* KA-33. Moves n points to their rest distance from the centroid weighted with 1 + lambda c; rest gives

@@ -84,6 +84,14 @@ typedef struct ris_lid_node {
     float gap_mm;              /* from the surface of the eye at rest; negative in the lining */
 } ris_lid_node;
 
+#define RIS_LINING_SOURCES 4
+/* A node of the mouth's lining moves by keep times the sum of its sources' displacements. Sources are nodes
+ * of the lips or nodes of the lining that stand before it. */
+typedef struct ris_lining_node {
+    uint32_t node, source_count, source[RIS_LINING_SOURCES];
+    float keep;
+} ris_lining_node;
+
 typedef struct ris_model {
     const ris_head *head; /* not owned when built by ris_model_create */
     ris_head *owned_head; /* the same head when built by ris_model_load, else NULL */
@@ -124,6 +132,8 @@ typedef struct ris_model {
     uint32_t lid_count; /* 0 without eyes, lids or in the kaehler tissue */
     ris_lid_node *lid;  /* ascending node (lid_count) */
     ris_lid_eye lid_eye[2];
+    uint32_t lining_count; /* 0 without lips, mouth_cavity or in the kaehler tissue */
+    ris_lining_node *lining;
     ris_vec3 *bone_anchor;   /* KA-14: point on the bone below the node at rest, mm (node_count) */
     const float *jaw_weight; /* (node_count) */
 
