@@ -3,8 +3,8 @@
  *
  * Default tissue (docs/physics.md), node at rest X, bindings (muscle, weight w, activity s in 0..1):
  *     P      = X + sum w s delta / max(1, sum w s)          delta blended over the segments of the binding
- *              a pulled corner of the mouth adds delta = its displacement with weight w s t^p,
- *              t = 1 at the corner, 0 at the midline
+ *              (a ring that a corner of the mouth drags counts with t^p below the bar, t = 1 at the corner,
+ *              0 at the midline); the lining of the mouth goes with the lips before it
  *     target = P + jaw_weight (J(P) - P),  normal = unit(n + jaw_weight (J n - n))
  * kaehler tissue: anchor A follows its one segment or its bone, mirror M moves by the same displacement.
  * The change of the target since the last tick is the over-relaxation of anchor_shift. */
@@ -24,8 +24,16 @@ static ris_vec3 attached_point(const ris_rig *rig, const ris_muscle *muscle, con
         segment.up = ris__rigid_rotate(&rig->jaw, segment.up);
         segment.wide = ris__rigid_rotate(&rig->jaw, segment.wide);
     }
-    return ris__segment_point(&segment, rig->p[point], rig->p[point + 1], rig->q[point], rig->q[point + 1],
-                              rig->bulge[attach->segment], attach->local);
+    const ris_vec3 a = rig->q[point], b = rig->q[point + 1];
+    if (muscle->kind == RIS_MUSCLE_SPHINCTER && !(model->push.flags & RIS_TISSUE_FLAG_KAEHLER)) {
+        /* the skin of a lip or lid goes along its ring, but does not swing about with every segment */
+        const ris_vec3 on_fiber = v3_lerp(a, b, attach->local.x + 0.5f);
+        const float height = segment.size.y * rig->bulge[attach->segment];
+        return v3_mad(v3_mad(on_fiber, attach->local.y * height, segment.up),
+                      attach->local.z * segment.size.z, segment.wide);
+    }
+    return ris__segment_point(&segment, rig->p[point], rig->p[point + 1], a, b, rig->bulge[attach->segment],
+                              attach->local);
 }
 
 /* How much a node of a ring counts as dragged by a corner of the mouth, 0..1; full is what the whole ring

@@ -174,9 +174,10 @@ static void test_tissue(void **state)
     /* the default, less the regions that this head has not */
     assert_int_equal(head.tissue.model, RIS_TISSUE_RISORIUS);
     assert_true(head.tissue.continuous && head.tissue.stiffness_scale == 2 && head.tissue.substeps == 8);
-    assert_int_equal(head.tissue.anchor_region_count, 3);
+    assert_int_equal(head.tissue.anchor_region_count, 4);
     assert_string_equal(head.tissue.anchor_region[1].region, "lips");
     assert_string_equal(head.tissue.anchor_region[2].region, "muscle");
+    assert_string_equal(head.tissue.anchor_region[3].region, "lips");
     ris_head_finish(&head);
     scratch_write("head.json",
                   HEAD_START JAW ",\"tissue\":{\"model\":\"kaehler\",\"law\":\"jump\",\"modulus\":[50,500],"

@@ -275,7 +275,7 @@ static void smile_drags_the_lip(void **state)
         const uint32_t i = row * columns + c;
         const float x = f.model->rest_position[i].x, moved = v3_length(target_delta(&f, i));
         if (x <= 0.0f) {
-            assert_true(moved == 0.0f);
+            assert_true(moved < 1.0f); /* the stretched ring thins, nothing else */
         } else if (x <= 18.0f) {
             assert_true(moved >= last - 0.1f);
             last = moved;
