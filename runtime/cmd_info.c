@@ -30,6 +30,10 @@ static void print_text(const char *path, const ris_model *model)
            (double)model->stable_dt_s * 1000.0);
     printf("rig         %u muscles, %u fibres, %u control points, %u constraint groups\n",
            model->muscle_count, model->fiber_count, model->fiber_point_count, model->group_count);
+    if (model->network_node_count > 0) {
+        printf("network     %u nodes, %u springs between merged muscles\n", model->network_node_count,
+               model->network_spring_count);
+    }
     printf("muscles\n");
     for (uint32_t i = 0; i < model->muscle_count; i++) {
         const ris_muscle *m = &model->muscle[i];

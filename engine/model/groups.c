@@ -1,8 +1,7 @@
-/* KA-28 constraint groups. The thesis intersects segment shapes; here an end of one muscle joins a point
- * of another when the distance of the muscle-level points is below the sum of half the larger of thickness
- * and width, plus 6 mm. In the kaehler tissue every end may join any point of another muscle; in the
- * default tissue only sphincter ends and the ends of muscles with a lip drag join (the corners of the
- * mouth), all else being blended by weights. */
+/* KA-28 constraint groups. The thesis intersects segment shapes, and so does the kaehler tissue (shape_groups.c). In the
+ * default tissue the groups are the corners of the mouth, all else being blended by weights: sphincter ends and the
+ * ends of muscles with a lip drag join when the distance of their muscle-level points is below the sum of half the
+ * larger of thickness and width, plus 6 mm. */
 #include "model_impl.h"
 #include "vec3.h"
 
@@ -11,8 +10,7 @@
 #define REACH_MM 6.0f
 
 typedef struct end_point {
-    uint32_t muscle, point, group;
-    bool is_end;
+    uint32_t muscle, point;
 } end_point;
 
 static bool is_end(const ris_muscle *muscle, uint32_t point)
@@ -45,20 +43,16 @@ static uint32_t root_of(const uint32_t *parent, uint32_t k)
 static uint32_t list_candidates(const ris_bake *bake, end_point *list)
 {
     const ris_model *model = bake->model;
-    const bool literal = bake->head->tissue.model == RIS_TISSUE_KAEHLER;
     uint32_t count = 0;
     for (uint32_t m = 0; m < model->muscle_count; ++m) {
         const ris_muscle *muscle = &model->muscle[m];
         for (uint32_t i = 0; i < muscle->point_count; ++i) {
-            bool end = is_end(muscle, i);
-            if (!literal &&
-                !(end && (muscle->kind == RIS_MUSCLE_SPHINCTER || muscle->lip_drag_power > 0.0f))) {
+            if (!is_end(muscle, i) ||
+                !(muscle->kind == RIS_MUSCLE_SPHINCTER || muscle->lip_drag_power > 0.0f)) {
                 continue;
             }
             if (list) {
-                list[count].muscle = m;
-                list[count].point = i;
-                list[count].is_end = end;
+                list[count] = (end_point){m, i};
             }
             ++count;
         }
@@ -71,9 +65,6 @@ static void join(const ris_model *model, const end_point *list, uint32_t count, 
                  bool *linked)
 {
     for (uint32_t a = 0; a < count; ++a) {
-        if (!list[a].is_end) {
-            continue;
-        }
         const ris_muscle *ma = &model->muscle[list[a].muscle];
         const ris_vec3 pa = ris__muscle_point(model, ma, model->fiber_point, list[a].point);
         const float reach = half_extent(ma, list[a].point) + REACH_MM;
@@ -96,6 +87,22 @@ static void join(const ris_model *model, const end_point *list, uint32_t count, 
     }
 }
 
+void ris__measure_group(ris_model *model, const ris_group *group)
+{
+    ris_group_point *point = model->group_point + group->first_point;
+    ris_vec3 sum = {0};
+    for (uint32_t k = 0; k < group->point_count; ++k) {
+        sum = v3_add(sum, ris__muscle_point(model, &model->muscle[point[k].muscle], model->fiber_point,
+                                            point[k].point));
+    }
+    const ris_vec3 centroid = v3_scale(sum, 1.0f / (float)group->point_count);
+    for (uint32_t k = 0; k < group->point_count; ++k) {
+        const ris_vec3 p =
+            ris__muscle_point(model, &model->muscle[point[k].muscle], model->fiber_point, point[k].point);
+        point[k].rest_distance_mm = v3_distance(p, centroid);
+    }
+}
+
 static ris_result fill_groups(ris_model *model, const end_point *list, uint32_t count, const uint32_t *parent,
                               const bool *linked, ris_error *err)
 {
@@ -107,14 +114,11 @@ static ris_result fill_groups(ris_model *model, const end_point *list, uint32_t 
     }
     for (uint32_t root = 0; result == RIS_OK && root < count; ++root) {
         ris_group group = {model->group_point_count, 0};
-        ris_vec3 sum = {0};
         for (uint32_t k = 0; k < count; ++k) {
             if (linked[k] && root_of(parent, k) == root) {
                 ris_group_point *point = &model->group_point[model->group_point_count++];
                 point->muscle = list[k].muscle;
                 point->point = list[k].point;
-                sum = v3_add(sum, ris__muscle_point(model, &model->muscle[point->muscle], model->fiber_point,
-                                                    point->point));
                 ++group.point_count;
             }
         }
@@ -126,13 +130,7 @@ static ris_result fill_groups(ris_model *model, const end_point *list, uint32_t 
                             group.point_count,
                             model->muscle[model->group_point[group.first_point].muscle].name, RIS_GROUP_MAX);
         }
-        const ris_vec3 centroid = v3_scale(sum, 1.0f / (float)group.point_count);
-        for (uint32_t k = 0; k < group.point_count; ++k) {
-            ris_group_point *point = &model->group_point[group.first_point + k];
-            ris_vec3 p =
-                ris__muscle_point(model, &model->muscle[point->muscle], model->fiber_point, point->point);
-            point->rest_distance_mm = v3_distance(p, centroid);
-        }
+        ris__measure_group(model, &group);
         model->group[model->group_count++] = group;
     }
     return result;
@@ -140,6 +138,9 @@ static ris_result fill_groups(ris_model *model, const end_point *list, uint32_t 
 
 ris_result ris__bake_groups(ris_bake *bake, ris_error *err)
 {
+    if (bake->head->tissue.model == RIS_TISSUE_KAEHLER) {
+        return ris__bake_shape_groups(bake, err);
+    }
     const uint32_t count = list_candidates(bake, NULL);
     end_point *list = NULL;
     uint32_t *parent = NULL;

@@ -60,6 +60,12 @@ ris_result ris__bake_muscles(ris_bake *bake, ris_error *err);
 ris_result ris__bake_groups(ris_bake *bake, ris_error *err);
 /* Nodes of the mouth's lining and what they follow. */
 ris_result ris__bake_lining(ris_bake *bake, ris_error *err);
+/* The same by intersecting shapes, in the kaehler tissue. */
+ris_result ris__bake_shape_groups(ris_bake *bake, ris_error *err);
+/* Distances of a group's points from their centroid at rest; the points stand in model->group_point. */
+void ris__measure_group(ris_model *model, const ris_group *group);
+/* KA-29: the muscle network of the kaehler tissue. */
+ris_result ris__bake_network(ris_bake *bake, ris_error *err);
 /* KA-42: which nodes a muscle moves, and how much. */
 ris_result ris__bake_bindings(ris_bake *bake, ris_error *err);
 /* kaehler tissue: the point on its muscle or its bone that a node hangs on, at rest. */

@@ -1,4 +1,5 @@
-/* muscle_constrain: KA-33 geometric resolution of the constraint groups, literal in the kaehler tissue. In
+/* muscle_constrain: KA-33 geometric resolution of the constraint groups, literal in the kaehler tissue, where
+ * the muscle network follows (KA-34, muscle_network.c). In
  * the default tissue the groups are the corners of the mouth: the corner's displacement is the weighted
  * mean of its members', which follow it along their whole length, and it drags the lips along the
  * orbicularis oris (group displacement x t^p) in place of the straightening of KA-35, which pulls lips
@@ -47,13 +48,11 @@ float ris__power(float t, float power)
     return result + (power - (float)whole) * (result * t - result);
 }
 
-/* Moves a point of a muscle in all its fibres. */
-static void displace_point(ris_rig *rig, const ris_group_point *member, ris_vec3 delta)
+void ris__displace_point(ris_rig *rig, uint32_t m, uint32_t point, ris_vec3 delta)
 {
-    const ris_model *model = rig->model;
-    const ris_muscle *muscle = &model->muscle[member->muscle];
+    const ris_muscle *muscle = &rig->model->muscle[m];
     for (uint32_t f = 0; f < muscle->fiber_count; ++f) {
-        ris_vec3 *q = &rig->q[model->fiber[muscle->first_fiber + f].first_point + member->point];
+        ris_vec3 *q = &rig->q[rig->model->fiber[muscle->first_fiber + f].first_point + point];
         *q = v3_add(*q, delta);
     }
 }
@@ -83,22 +82,17 @@ static void resolve_literal(ris_rig *rig, const ris_group *group)
     const ris_group_point *member = model->group_point + group->first_point;
     float contraction[RIS_GROUP_MAX] = {0}, distance[RIS_GROUP_MAX] = {0};
     ris_vec3 rest[RIS_GROUP_MAX] = {{0}}, before[RIS_GROUP_MAX] = {{0}}, after[RIS_GROUP_MAX] = {{0}};
-    bool acting = !rig->jaw.identity;
     for (uint32_t k = 0; k < group->point_count; ++k) {
         const ris_muscle *muscle = &model->muscle[member[k].muscle];
         contraction[k] = rig->contraction[member[k].muscle];
-        acting = acting || contraction[k] > 0.0f;
         distance[k] = member[k].rest_distance_mm;
         rest[k] = ris__muscle_point(model, muscle, model->fiber_point, member[k].point);
         before[k] = after[k] = ris__muscle_point(model, muscle, rig->q, member[k].point);
     }
-    if (!acting) {
-        return; /* nothing has moved: leave the bits alone */
-    }
     ris__resolve_group(group->point_count, contraction, distance, rest, model->head->tissue.constraint_lambda,
                        after);
     for (uint32_t k = 0; k < group->point_count; ++k) {
-        displace_point(rig, &member[k], v3_sub(after[k], before[k]));
+        ris__displace_point(rig, member[k].muscle, member[k].point, v3_sub(after[k], before[k]));
     }
 }
 
@@ -162,19 +156,40 @@ static void drag_ring(ris_rig *rig, uint32_t m)
     }
 }
 
+/* False in the neutral pose, whose bits are to be left alone. */
+static bool anything_acts(const ris_rig *rig)
+{
+    bool acting = !rig->jaw.identity;
+    for (uint32_t m = 0; m < rig->model->muscle_count; ++m) {
+        acting = acting || rig->contraction[m] > 0.0f;
+    }
+    return acting;
+}
+
+static void constrain_literal(ris_rig *rig)
+{
+    if (!anything_acts(rig)) {
+        return;
+    }
+    ris__network_measure(rig);
+    for (uint32_t g = 0; g < rig->model->group_count; ++g) {
+        resolve_literal(rig, &rig->model->group[g]);
+    }
+    ris__network_apply(rig);
+}
+
 void ris__muscle_constrain(ris_rig *rig)
 {
     const ris_model *model = rig->model;
-    const bool literal = (model->push.flags & RIS_TISSUE_FLAG_KAEHLER) != 0;
     memset(rig->drag, 0, 2 * (size_t)model->muscle_count * sizeof *rig->drag);
-    for (uint32_t g = 0; g < model->group_count; ++g) {
-        if (literal) {
-            resolve_literal(rig, &model->group[g]);
-        } else {
-            resolve_corner(rig, &model->group[g]);
-        }
+    if (model->push.flags & RIS_TISSUE_FLAG_KAEHLER) {
+        constrain_literal(rig);
+        return;
     }
-    for (uint32_t m = 0; !literal && m < model->muscle_count; ++m) {
+    for (uint32_t g = 0; g < model->group_count; ++g) {
+        resolve_corner(rig, &model->group[g]);
+    }
+    for (uint32_t m = 0; m < model->muscle_count; ++m) {
         if (model->muscle[m].kind == RIS_MUSCLE_SPHINCTER &&
             (rig->drag[2 * (size_t)m].strength > 0.0f || rig->drag[2 * (size_t)m + 1].strength > 0.0f)) {
             drag_ring(rig, m);

@@ -19,6 +19,9 @@ ris_result ris__rig_init(ris_rig *rig, const ris_model *model, ris_error *err)
         {&rig->p, model->fiber_point_count, sizeof *rig->p},
         {&rig->q, model->fiber_point_count, sizeof *rig->q},
         {&rig->constrained, model->fiber_point_count, sizeof *rig->constrained},
+        {&rig->network_x, model->network_node_count, sizeof *rig->network_x},
+        {&rig->network_v, 3 * (size_t)model->network_node_count, sizeof *rig->network_v},
+        {&rig->network_rest, model->network_spring_count, sizeof *rig->network_rest},
         {&rig->contraction, model->muscle_count, sizeof *rig->contraction},
         {&rig->activation, model->muscle_count, sizeof *rig->activation},
         {&rig->activity, model->muscle_count, sizeof *rig->activity},
@@ -60,6 +63,9 @@ void ris__rig_finish(ris_rig *rig)
     free(rig->p);
     free(rig->q);
     free(rig->constrained);
+    free(rig->network_x);
+    free(rig->network_v);
+    free(rig->network_rest);
     free(rig->contraction);
     free(rig->activation);
     free(rig->activity);

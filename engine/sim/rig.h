@@ -54,6 +54,9 @@ typedef struct ris_rig {
     /* muscle_constrain */
     ris_drag *drag;    /* (2 x muscle_count): first and last end of sphincters */
     bool *constrained; /* per fibre point (fiber_point_count) */
+    ris_vec3 *network_x,
+        *network_v;      /* kaehler: positions, and 3 x velocities and forces (network_node_count) */
+    float *network_rest; /* mm (network_spring_count) */
     /* muscle_bulge */
     float *bulge; /* height scale per segment (segment_count) */
     /* muscle_shape */
@@ -120,6 +123,21 @@ ris_vec3 ris__contract_slit(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, float c);
  * the fallback direction. Returns the centroid. */
 ris_vec3 ris__resolve_group(uint32_t n, const float *contraction, const float *rest_distance_mm,
                             const ris_vec3 *rest, float lambda, ris_vec3 *point);
+/* Moves a point of a muscle in all its fibres (KA-27). */
+void ris__displace_point(ris_rig *rig, uint32_t muscle, uint32_t point, ris_vec3 delta);
+/* KA-34. Rest lengths of the network before the groups are resolved; then the run, and what it does to the muscles. */
+void ris__network_measure(ris_rig *rig);
+void ris__network_apply(ris_rig *rig);
+/* KA-34. A network with its rest lengths this tick; force is scratch (node_count). */
+typedef struct ris_network {
+    const ris_network_node *node;
+    const ris_network_spring *spring;
+    uint32_t node_count, spring_count;
+    const float *rest_mm; /* (spring_count) */
+    ris_vec3 *force;
+} ris_network;
+/* Moves x from rest for 20 ms; half and previous are scratch (node_count each). */
+void ris__network_run(const ris_network *net, ris_vec3 *x, ris_vec3 *half, ris_vec3 *previous);
 /* KA-35. Weight of straightening for closed-loop lengths now and at rest. */
 float ris__relax_weight(float length_mm, float rest_length_mm);
 /* KA-36. Height scale of segment i of count for length ratio rho. */

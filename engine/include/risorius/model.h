@@ -63,6 +63,17 @@ typedef struct ris_group {
     uint32_t first_point, point_count;
 } ris_group;
 
+/* Nodes and springs of the muscle network (KA-29). */
+typedef struct ris_network_node {
+    uint32_t muscle, point;
+    bool fixed; /* at the bone end of its muscle */
+} ris_network_node;
+
+typedef struct ris_network_spring {
+    uint32_t a, b; /* into network_node */
+    float rest_mm; /* negative: the distance that contraction alone gives this tick */
+} ris_network_spring;
+
 /* An eyeball under its lids, at rest looking along +z: a ball with the cornea's sphere in front. */
 typedef struct ris_lid_eye {
     ris_vec3 centre;                        /* mm */
@@ -129,6 +140,9 @@ typedef struct ris_model {
     uint32_t group_count, group_point_count;
     ris_group *group;
     ris_group_point *group_point;
+    uint32_t network_node_count, network_spring_count; /* 0 outside the kaehler tissue */
+    ris_network_node *network_node;
+    ris_network_spring *network_spring;
     uint32_t lid_count; /* 0 without eyes, lids or in the kaehler tissue */
     ris_lid_node *lid;  /* ascending node (lid_count) */
     ris_lid_eye lid_eye[2];
