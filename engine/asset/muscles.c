@@ -14,10 +14,27 @@
 #define MIN_SEGMENT_MM 1e-3
 #define TEXT_SIZE 1024
 
-static const char *const record_keys[] = {
-    "name",   "mirror_of", "kind",   "bone",      "grid",   "axis",      "thickness_mm",    "max_shortening",
-    "attach", "au",        "origin", "insertion", "source", "radius_mm", "insertion_start", "lip_drag_power",
-    "gain",   "closes",    NULL};
+static const char *const record_keys[] = {"name",
+                                          "mirror_of",
+                                          "kind",
+                                          "bone",
+                                          "grid",
+                                          "axis",
+                                          "thickness_mm",
+                                          "max_shortening",
+                                          "attach",
+                                          "au",
+                                          "origin",
+                                          "insertion",
+                                          "source",
+                                          "radius_mm",
+                                          "insertion_start",
+                                          "lip_drag_power",
+                                          "gain",
+                                          "closes",
+                                          "end_bone",
+                                          "drives",
+                                          NULL};
 
 static double distance(const ris_vec3 *a, const ris_vec3 *b)
 {
@@ -214,6 +231,34 @@ static ris_result read_numbers(const ris_json_at *at, ris_muscle_def *def, ris_e
     return RIS_OK;
 }
 
+/* A muscle from bone to bone keeps the places its author drew, between both. */
+static ris_result read_end_bone(const ris_json_at *at, ris_muscle_def *def, ris_error *err)
+{
+    static const char *const bones[] = {"auto", "skull", "jaw", NULL}; /* order of ris_bone */
+    uint32_t bone = 0;
+    if (ris__json_absent(at)) {
+        return RIS_OK;
+    }
+    ris_result result = ris__json_choice(at, RIS_JSON_REQUIRED, bones + 1, &bone, err);
+    if (result == RIS_OK && (def->kind != RIS_MUSCLE_LINEAR || def->bone == RIS_BONE_AUTO)) {
+        return ris__json_expected(at, err, "no end_bone but for a linear muscle with a bone of its own");
+    }
+    def->end_bone = (ris_bone)(bone + 1);
+    return result;
+}
+
+/* What the muscle does to the jaw, in its channels. */
+static ris_result read_drives(const ris_json_at *at, ris_muscle_def *def, ris_error *err)
+{
+    static const char *const keys[] = {"open", "forward", "side", NULL};
+    ris_result result = at->value ? ris__json_check_object(at, keys, err) : RIS_OK;
+    for (uint32_t k = 0; at->value && result == RIS_OK && k < 3; k++) {
+        ris_json_at item = ris__json_key(at, keys[k]);
+        result = ris__json_float(&item, RIS_JSON_OPTIONAL, -1, 1, &def->drives[k], err);
+    }
+    return result;
+}
+
 /* A record with its own grid; def->name is read already. */
 static ris_result read_own(const ris_json_at *at, uint32_t vertex_count, ris_muscle_def *def, ris_error *err)
 {
@@ -225,6 +270,7 @@ static ris_result read_own(const ris_json_at *at, uint32_t vertex_count, ris_mus
     ris_json_at attach = ris__json_key(at, "attach"), units = ris__json_key(at, "au");
     ris_json_at origin = ris__json_key(at, "origin"), insertion = ris__json_key(at, "insertion");
     ris_json_at source = ris__json_key(at, "source"), closes = ris__json_key(at, "closes");
+    ris_json_at end_bone = ris__json_key(at, "end_bone"), drives = ris__json_key(at, "drives");
     ris_result result;
     if ((result = ris__json_choice(&kind_at, RIS_JSON_REQUIRED, kinds, &kind, err)) ||
         (result = ris__json_choice(&bone_at, RIS_JSON_OPTIONAL, bones, &bone, err))) {
@@ -232,7 +278,8 @@ static ris_result read_own(const ris_json_at *at, uint32_t vertex_count, ris_mus
     }
     def->kind = (ris_muscle_kind)kind;
     def->bone = (ris_bone)bone;
-    if ((result = read_grid(&grid, def, err)) || (result = read_axis(&axis, def, err)) ||
+    if ((result = read_end_bone(&end_bone, def, err)) || (result = read_drives(&drives, def, err)) ||
+        (result = read_grid(&grid, def, err)) || (result = read_axis(&axis, def, err)) ||
         (result = read_closes(&closes, def, err)) || (result = read_numbers(at, def, err)) ||
         (result = read_attach(&attach, vertex_count, def, err)) ||
         (result = read_action_units(&units, def, err)) || (result = read_story(&origin, &def->origin, err)) ||
@@ -280,6 +327,7 @@ static ris_result copy_mirrored(const ris_muscle_def *source, const char *file, 
             def->grid[(size_t)to_row * source->columns + to_column] = p;
         }
     }
+    def->drives[2] = -def->drives[2];
     def->axis[0].x = -def->axis[0].x;
     def->axis[1].x = -def->axis[1].x;
     return RIS_OK;

@@ -14,6 +14,8 @@
 #define FACING_FULL 0.2f /* n_s . n_d from which on the facing rule does not weaken a binding */
 #define ABOVE_FULL 0.6f  /* from -0.5 to 0.5 of this n_s . up a binding goes from none to full */
 
+#define DEEP_MM 6.0f          /* of tissue over a muscle between bones: from here on its bulge shows less, */
+#define SUNK_MM 22.0f         /* and from here on not at all */
 #define SMALLEST_FACING 1e-3f /* of a vertex that a list binds though it faces away */
 #define TWIN_MM 1e-3f
 
@@ -79,6 +81,10 @@ static bool may_bind(const binder *b, uint32_t m, uint32_t node)
         return false;
     }
     const ris_muscle_def *def = b->bake->model->muscle[m].def;
+    if (def->end_bone != RIS_BONE_AUTO &&
+        (b->bake->head->tissue.model == RIS_TISSUE_KAEHLER || !(def->max_shortening > 0.0f))) {
+        return false; /* the thesis's muscles all end in the skin */
+    }
     if (def->kind == RIS_MUSCLE_LINEAR && def->lip_drag_power > 0.0f && b->lip[node]) {
         /* the pulled corner drags both lips along the oris; a direct pull on one of them would part them */
         return false;
@@ -137,7 +143,9 @@ static ris_result add_binding(binder *b, uint32_t m, uint32_t node, const touch 
         attach->share = touches[k].share;
     }
     ++model->binding_start[node + 1];
-    b->bake->muscle_weight[node] = f_max(b->bake->muscle_weight[node], weight);
+    if (model->muscle[m].def->end_bone == RIS_BONE_AUTO) { /* the others do not hold the skin */
+        b->bake->muscle_weight[node] = f_max(b->bake->muscle_weight[node], weight);
+    }
     return RIS_OK;
 }
 
@@ -198,7 +206,13 @@ static ris_result bind_blended(binder *b, uint32_t m, uint32_t node, ris_error *
         float start = muscle->insertion_start;
         /* a muscle of the face does not move the lining of the mouth behind it */
         weight *= f_clamp(0.5f + above / ABOVE_FULL, 0.0f, 1.0f);
-        weight *= f_smoothstep(muscle->gain * (along - start) / f_max(1.0f - start, 1e-3f));
+        if (muscle->def->end_bone == RIS_BONE_AUTO) {
+            weight *= f_smoothstep(muscle->gain * (along - start) / f_max(1.0f - start, 1e-3f));
+        } else {
+            const float over = list[0].depth - 0.5f * model->segment[list[0].segment].size.y;
+            weight *=
+                f_min(muscle->gain, 1.0f) * (1.0f - f_smoothstep((over - DEEP_MM) / (SUNK_MM - DEEP_MM)));
+        }
     }
     if (!(weight > 1e-4f) && !listed) {
         return RIS_OK;

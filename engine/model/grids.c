@@ -159,6 +159,18 @@ void ris__grid_finish(ris_bake_grid *grid)
     *grid = (ris_bake_grid){0};
 }
 
+/* From bone to bone: every point where the author drew it, with its depth for the skin above it. */
+static void keep_grid(const ris_bake *bake, const ris_muscle_def *def, ris_bake_grid *grid)
+{
+    for (uint32_t k = 0; k < def->rows * def->columns; ++k) {
+        ris_vec3 on_skin = {0};
+        const bool below = ris__project_on_skin(bake, def->grid[k], grid->normal[k], &on_skin);
+        grid->deep[k] = true;
+        grid->point[k] = def->grid[k];
+        grid->depth[k] = below ? v3_distance(on_skin, def->grid[k]) : FARTHEST_MM;
+    }
+}
+
 static ris_result sink_grid(ris_bake *bake, uint32_t m, ris_error *err)
 {
     const ris_muscle_def *def = &bake->head->muscle[m];
@@ -169,6 +181,10 @@ static ris_result sink_grid(ris_bake *bake, uint32_t m, ris_error *err)
     }
     const float depth = bake->head->tissue.skin_mm + (def->thickness_mm[0] + def->thickness_mm[1]) / 4.0f;
     ris__grid_normals(bake, def->grid, def->rows, def->columns, grid->normal);
+    if (def->end_bone != RIS_BONE_AUTO) {
+        keep_grid(bake, def, grid);
+        return RIS_OK;
+    }
     uint32_t row = 0, column = 0;
     for (uint32_t k = 0; k < def->rows * def->columns; ++k) {
         ris_vec3 on_skin = {0};

@@ -23,6 +23,12 @@ typedef struct union_find {
     uint32_t unit_count;
 } union_find;
 
+/* Muscles between bones meet no other: bones alone hold their ends. */
+static bool takes_part(const ris_muscle *muscle)
+{
+    return muscle->def->end_bone == RIS_BONE_AUTO;
+}
+
 static bool is_end(const ris_muscle *muscle, uint32_t segment)
 {
     return segment + 2 == muscle->point_count || (muscle->kind == RIS_MUSCLE_SPHINCTER && segment == 0);
@@ -101,11 +107,13 @@ static ris_result list_units(union_find *u, ris_error *err)
 static void link_units(union_find *u)
 {
     for (uint32_t a = 0; a < u->unit_count; ++a) {
-        if (!is_end(&u->model->muscle[u->unit[a].muscle], u->unit[a].segment)) {
+        const ris_muscle *muscle = &u->model->muscle[u->unit[a].muscle];
+        if (!takes_part(muscle) || !is_end(muscle, u->unit[a].segment)) {
             continue;
         }
         for (uint32_t b = 0; b < u->unit_count; ++b) {
-            if (u->unit[b].muscle != u->unit[a].muscle && shapes_meet(u, a, b)) {
+            if (u->unit[b].muscle != u->unit[a].muscle && takes_part(&u->model->muscle[u->unit[b].muscle]) &&
+                shapes_meet(u, a, b)) {
                 u->unit[a].linked = u->unit[b].linked = true;
                 u->unit[root_of(u, b)].root = root_of(u, a);
             }

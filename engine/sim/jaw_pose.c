@@ -110,11 +110,24 @@ static ris_rigid turn_and_shift(const ris_jaw_def *def, float open, float forwar
     return jaw;
 }
 
-static void pose_jaw(ris_rig *rig, const float *beside)
+/* Channel of the jaw with what the muscles that move it add, clamped. */
+static float driven(const ris_rig *rig, const float *pose, uint32_t channel, float least)
+{
+    const ris_model *model = rig->model;
+    double sum = (double)pose[rig->first_beside + channel];
+    for (uint32_t m = 0; m < model->muscle_count; ++m) {
+        const float *drives = model->muscle[m].def->drives;
+        sum += (double)f_clamp(pose[m], 0.0f, 1.0f) * (double)drives[channel - RIS__JAW_OPEN];
+    }
+    return f_clamp((float)sum, least, 1.0f);
+}
+
+static void pose_jaw(ris_rig *rig, const float *pose)
 {
     const ris_head *head = rig->model->head;
-    const float open = beside[RIS__JAW_OPEN], forward = beside[RIS__JAW_FORWARD],
-                side = beside[RIS__JAW_SIDE];
+    const float open = driven(rig, pose, RIS__JAW_OPEN, 0.0f),
+                forward = driven(rig, pose, RIS__JAW_FORWARD, -1.0f),
+                side = driven(rig, pose, RIS__JAW_SIDE, -1.0f);
     rig->jaw = rig->model->push.flags & RIS_TISSUE_FLAG_KAEHLER
                    ? turn_and_shift(&head->jaw, open, forward, side)
                    : ris__jaw_path(&head->jaw, &head->guidance, open, forward, side);
@@ -124,7 +137,7 @@ void ris__jaw_pose(ris_rig *rig, const float *pose)
 {
     const ris_model *model = rig->model;
     const float *beside = pose + rig->first_beside;
-    pose_jaw(rig, beside);
+    pose_jaw(rig, pose);
     rig->eye[0] = yaw_pitch_roll(part_pivot(model->head, RIS_BONE_EYE_L), beside[RIS__EYE_YAW_L],
                                  beside[RIS__EYE_PITCH_L], 0.0f);
     rig->eye[1] = yaw_pitch_roll(part_pivot(model->head, RIS_BONE_EYE_R), beside[RIS__EYE_YAW_R],
@@ -143,7 +156,8 @@ void ris__jaw_pose(ris_rig *rig, const float *pose)
     }
     for (uint32_t m = 0; m < model->muscle_count; ++m) {
         const ris_muscle *muscle = &model->muscle[m];
-        for (uint32_t f = 0; muscle->on_jaw && f < muscle->fiber_count; ++f) {
+        const bool turns = muscle->on_jaw && muscle->def->end_bone == RIS_BONE_AUTO;
+        for (uint32_t f = 0; turns && f < muscle->fiber_count; ++f) {
             ris_vec3 *p = rig->p + model->fiber[muscle->first_fiber + f].first_point;
             for (uint32_t i = 0; i < muscle->point_count; ++i) {
                 p[i] = ris__rigid_apply(&rig->jaw, p[i]);

@@ -28,12 +28,47 @@ static float length_of(const ris_vec3 *p, uint32_t n)
     return length;
 }
 
+/* Length of a fibre between the bones as they stand, of that at rest. */
+static float stretch(const ris_rig *rig, const ris_fiber *fiber, uint32_t n)
+{
+    const ris_vec3 *rest = rig->model->fiber_point + fiber->first_point;
+    const float *w = rig->muscle_jaw + fiber->first_point;
+    float now = 0.0f;
+    ris_vec3 last = {0};
+    for (uint32_t i = 0; i < n; ++i) {
+        const ris_vec3 p = v3_lerp(rest[i], ris__rigid_apply(&rig->jaw, rest[i]), w[i]);
+        now += i > 0 ? v3_distance(p, last) : 0.0f;
+        last = p;
+    }
+    return now / length_of(rest, n);
+}
+
+/* Muscles between bones: the bones alone decide the length, contraction makes the belly swell. */
+static void bulge_between_bones(ris_rig *rig, uint32_t m)
+{
+    const ris_muscle *muscle = &rig->model->muscle[m];
+    const uint32_t segments = muscle->point_count - 1;
+    for (uint32_t f = 0; f < muscle->fiber_count; ++f) {
+        const ris_fiber *fiber = &rig->model->fiber[muscle->first_fiber + f];
+        const float rho = rig->jaw.identity ? 1.0f : stretch(rig, fiber, muscle->point_count);
+        for (uint32_t s = 0; s < segments; ++s) {
+            rig->bulge[fiber->first_segment + s] =
+                ris__bulge_factor(muscle->kind, rho, s, segments) *
+                ris__bulge_factor(muscle->kind, 1.0f - rig->contraction[m], s, segments);
+        }
+    }
+}
+
 void ris__muscle_bulge(ris_rig *rig)
 {
     const ris_model *model = rig->model;
     const bool kaehler = (model->push.flags & RIS_TISSUE_FLAG_KAEHLER) != 0;
     for (uint32_t m = 0; m < model->muscle_count; ++m) {
         const ris_muscle *muscle = &model->muscle[m];
+        if (muscle->def->end_bone != RIS_BONE_AUTO) {
+            bulge_between_bones(rig, m);
+            continue;
+        }
         const bool lip = !kaehler && muscle->kind == RIS_MUSCLE_SPHINCTER && !muscle->def->closes_on_line;
         for (uint32_t f = 0; f < muscle->fiber_count; ++f) {
             const ris_fiber *fiber = &model->fiber[muscle->first_fiber + f];

@@ -118,8 +118,9 @@ void ris__muscle_contract(ris_rig *rig, const float *pose)
                          v3_dot(side, side) > 0.5f;
         for (uint32_t f = 0; f < muscle->fiber_count; ++f) {
             const uint32_t first = model->fiber[muscle->first_fiber + f].first_point;
-            if (muscle->kind == RIS_MUSCLE_LINEAR) {
-                ris__contract_linear(rig->p + first, muscle->point_count, c, rig->q + first);
+            if (muscle->kind == RIS_MUSCLE_LINEAR) { /* between bones, these alone decide the length */
+                const float shorter = muscle->def->end_bone == RIS_BONE_AUTO ? c : 0.0f;
+                ris__contract_linear(rig->p + first, muscle->point_count, shorter, rig->q + first);
                 continue;
             }
             for (uint32_t i = 0; i < muscle->point_count; ++i) {

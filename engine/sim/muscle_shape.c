@@ -30,6 +30,22 @@ static void hang_between_bones(const ris_muscle *muscle, uint32_t first, float *
     }
 }
 
+/* From the bone of the first row to that of the last, by the way along the fibre; the ends go with their bones. */
+static void hang_on_both(const ris_model *model, const ris_muscle *muscle, uint32_t first, float *weight)
+{
+    const float start = muscle->on_jaw ? 1.0f : 0.0f,
+                end = muscle->def->end_bone == RIS_BONE_JAW ? 1.0f : 0.0f;
+    float total = 0.0f, length = 0.0f;
+    for (uint32_t i = 1; i < muscle->point_count; ++i) {
+        total += v3_distance(model->fiber_point[first + i], model->fiber_point[first + i - 1]);
+    }
+    for (uint32_t i = 0; i < muscle->point_count; ++i) {
+        length +=
+            i > 0 ? v3_distance(model->fiber_point[first + i], model->fiber_point[first + i - 1]) : 0.0f;
+        weight[first + i] = start + f_smoothstep(length / total) * (end - start);
+    }
+}
+
 ris_result ris__muscle_jaw_weights(const ris_model *model, float *weight, ris_error *err)
 {
     float *sum = NULL;
@@ -57,6 +73,10 @@ ris_result ris__muscle_jaw_weights(const ris_model *model, float *weight, ris_er
         const ris_muscle *muscle = &model->muscle[m];
         for (uint32_t f = 0; f < muscle->fiber_count; ++f) {
             const uint32_t first = model->fiber[muscle->first_fiber + f].first_point;
+            if (muscle->def->end_bone != RIS_BONE_AUTO) {
+                hang_on_both(model, muscle, first, weight);
+                continue;
+            }
             if (!(sum[first] > 0.0f)) {
                 hang_between_bones(muscle, first, weight);
                 continue;
@@ -109,11 +129,17 @@ static ris_vec3 lid_carry(const ris_rig *rig, uint32_t m, ris_vec3 point)
     return total > 0.0f ? v3_scale(sum, 1.0f / total) : none;
 }
 
+/* The kaehler tissue has turned the muscles on the jaw in jaw_pose, but those between bones. */
+static bool turned_before(const ris_model *model, const ris_muscle *muscle)
+{
+    return (model->push.flags & RIS_TISSUE_FLAG_KAEHLER) && muscle->def->end_bone == RIS_BONE_AUTO;
+}
+
 static void place_points(const ris_rig *rig, uint32_t m, ris_vec3 *point)
 {
     const ris_model *model = rig->model;
     const ris_muscle *muscle = &model->muscle[m];
-    const bool kaehler = (model->push.flags & RIS_TISSUE_FLAG_KAEHLER) != 0;
+    const bool kaehler = turned_before(model, muscle);
     for (uint32_t f = 0; f < muscle->fiber_count; ++f) {
         const uint32_t first = model->fiber[muscle->first_fiber + f].first_point;
         for (uint32_t i = 0; i < muscle->point_count; ++i) {
@@ -147,7 +173,7 @@ static void place_segment(const ris_rig *rig, const ris_muscle *muscle, uint32_t
                           const ris_vec3 *point, ris_segment *out)
 {
     const ris_model *model = rig->model;
-    const bool kaehler = (model->push.flags & RIS_TISSUE_FLAG_KAEHLER) != 0;
+    const bool kaehler = turned_before(model, muscle);
     const float w = kaehler ? (muscle->on_jaw ? 1.0f : 0.0f)
                             : 0.5f * (rig->muscle_jaw[first] + rig->muscle_jaw[first + 1]);
     const ris_segment *rest = &model->segment[segment];

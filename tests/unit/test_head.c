@@ -165,6 +165,36 @@ static void test_muscle_keys(void **state)
     ris_head_finish(&head);
 }
 
+/* A muscle between bones that drives the jaw; its mirror image drives it to the other side. */
+static void test_jaw_muscle_keys(void **state)
+{
+    (void)state;
+#define CHEWING(more) MUSCLES_HEAD "{\"name\":\"masseter.L\",\"kind\":\"linear\",\"grid\":" GRID more "}]}"
+#define BOTH ",\"bone\":\"skull\",\"end_bone\":\"jaw\",\"drives\":{\"open\":-0.5,\"side\":0.25}"
+    ris_head head;
+    write_head();
+    scratch_write("muscles.json",
+                  MUSCLES_HEAD "{\"name\":\"masseter.L\",\"kind\":\"linear\",\"grid\":" GRID BOTH
+                               "},{\"name\":\"masseter.R\",\"mirror_of\":\"masseter.L\"}]}");
+    scratch_write("head.json", HEAD_START JAW "}");
+    expect_loads(&head);
+    for (uint32_t k = 0; k < 2; k++) {
+        assert_int_equal(head.muscle[k].end_bone, RIS_BONE_JAW);
+        assert_true(head.muscle[k].drives[0] == -0.5f && head.muscle[k].drives[1] == 0);
+        assert_true(head.muscle[k].drives[2] == (k ? -0.25f : 0.25f));
+    }
+    ris_head_finish(&head);
+    expect_refused("muscles.json", CHEWING(",\"end_bone\":\"jaw\""),
+                   "muscles[0].end_bone: expected no end_bone but");
+    expect_refused("muscles.json", CHEWING(",\"bone\":\"skull\",\"end_bone\":\"hyoid\""),
+                   "muscles[0].end_bone: expected");
+    expect_refused("muscles.json", CHEWING(",\"drives\":{\"open\":2}"),
+                   "muscles[0].drives.open: expected a number of -1 to 1, found 2");
+    expect_refused("muscles.json", CHEWING(",\"drives\":{\"shut\":1}"),
+                   "muscles[0].drives.shut: unknown key");
+    expect_refused("muscles.json", CHEWING(",\"drives\":1"), "muscles[0].drives: expected an object");
+}
+
 static void test_tissue(void **state)
 {
     (void)state;
@@ -464,6 +494,7 @@ int main(void)
         cmocka_unit_test(test_loads),
         cmocka_unit_test(test_mirrored_muscle),
         cmocka_unit_test(test_muscle_keys),
+        cmocka_unit_test(test_jaw_muscle_keys),
         cmocka_unit_test(test_tissue),
         cmocka_unit_test(test_refuses_files),
         cmocka_unit_test(test_refuses_head_json),

@@ -41,7 +41,9 @@ typedef enum ris_bone {
 typedef struct ris_muscle_def {
     char name[RIS_NAME_SIZE]; /* snake-case Latin with .L/.R */
     ris_muscle_kind kind;
-    ris_bone bone; /* AUTO, SKULL or JAW */
+    ris_bone bone;     /* AUTO, SKULL or JAW */
+    ris_bone end_bone; /* of the last row: SKULL or JAW of a muscle between bones, else AUTO (the skin) */
+    float drives[3];   /* what activation 1 adds to jaw.open, jaw.forward, jaw.side */
     uint32_t rows, columns;
     ris_vec3 *grid;   /* row 0 = fixed end, mm (rows x columns) */
     ris_vec3 axis[2]; /* sphincter axis a0, a1, mm */
