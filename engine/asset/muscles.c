@@ -34,6 +34,7 @@ static const char *const record_keys[] = {"name",
                                           "closes",
                                           "end_bone",
                                           "drives",
+                                          "acts_on",
                                           NULL};
 
 static double distance(const ris_vec3 *a, const ris_vec3 *b)
@@ -259,6 +260,21 @@ static ris_result read_drives(const ris_json_at *at, ris_muscle_def *def, ris_er
     return result;
 }
 
+static ris_result read_acts_on(const ris_json_at *at, ris_muscle_def *def, ris_error *err)
+{
+    static const char *const choices[] = {"skin", "lip", "lid", NULL}; /* order of ris_acts_on */
+    uint32_t choice = 0;
+    ris_result result = ris__json_choice(at, RIS_JSON_OPTIONAL, choices, &choice, err);
+    def->acts_on = (ris_acts_on)choice;
+    if (result == RIS_OK && choice != RIS_ACTS_ON_SKIN && def->kind != RIS_MUSCLE_LINEAR) {
+        return ris__json_expected(at, err, "skin for a sphincter");
+    }
+    if (result == RIS_OK && choice == RIS_ACTS_ON_LID && !ris__name_is_sided(def->name)) {
+        return ris__json_expected(at, err, "lid only for a muscle with a side");
+    }
+    return result;
+}
+
 /* A record with its own grid; def->name is read already. */
 static ris_result read_own(const ris_json_at *at, uint32_t vertex_count, ris_muscle_def *def, ris_error *err)
 {
@@ -271,6 +287,7 @@ static ris_result read_own(const ris_json_at *at, uint32_t vertex_count, ris_mus
     ris_json_at origin = ris__json_key(at, "origin"), insertion = ris__json_key(at, "insertion");
     ris_json_at source = ris__json_key(at, "source"), closes = ris__json_key(at, "closes");
     ris_json_at end_bone = ris__json_key(at, "end_bone"), drives = ris__json_key(at, "drives");
+    ris_json_at acts_on = ris__json_key(at, "acts_on");
     ris_result result;
     if ((result = ris__json_choice(&kind_at, RIS_JSON_REQUIRED, kinds, &kind, err)) ||
         (result = ris__json_choice(&bone_at, RIS_JSON_OPTIONAL, bones, &bone, err))) {
@@ -280,8 +297,8 @@ static ris_result read_own(const ris_json_at *at, uint32_t vertex_count, ris_mus
     def->bone = (ris_bone)bone;
     if ((result = read_end_bone(&end_bone, def, err)) || (result = read_drives(&drives, def, err)) ||
         (result = read_grid(&grid, def, err)) || (result = read_axis(&axis, def, err)) ||
-        (result = read_closes(&closes, def, err)) || (result = read_numbers(at, def, err)) ||
-        (result = read_attach(&attach, vertex_count, def, err)) ||
+        (result = read_closes(&closes, def, err)) || (result = read_acts_on(&acts_on, def, err)) ||
+        (result = read_numbers(at, def, err)) || (result = read_attach(&attach, vertex_count, def, err)) ||
         (result = read_action_units(&units, def, err)) || (result = read_story(&origin, &def->origin, err)) ||
         (result = read_story(&insertion, &def->insertion, err)) ||
         (result = read_story(&source, &def->source, err))) {

@@ -74,7 +74,7 @@ static touch meet_segment(const binder *b, uint32_t m, uint32_t fiber, uint32_t 
 static bool may_bind(const binder *b, uint32_t m, uint32_t node)
 {
     const uint8_t lip = b->muscle_lip[m];
-    if (b->lining[node]) {
+    if (b->lining[node] || b->bake->model->muscle[m].def->acts_on == RIS_ACTS_ON_LID) {
         return false;
     }
     if ((lip == LIP_UPPER && b->lip[node] == LIP_LOWER) || (lip == LIP_LOWER && b->lip[node] == LIP_UPPER)) {

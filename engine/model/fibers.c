@@ -117,6 +117,9 @@ static ris_result make_muscle(ris_bake *bake, uint32_t m, ris_error *err)
     muscle->axis[0] = def->axis[0];
     muscle->axis[1] = def->axis[1];
     muscle->def = def;
+    if (def->acts_on == RIS_ACTS_ON_LID) {
+        muscle->lid_eye = def->name[strlen(def->name) - 1] == 'L' ? 1 : 2;
+    }
     for (uint32_t f = 0; f < muscle->fiber_count; ++f) {
         ris_fiber *fiber = &model->fiber[model->fiber_count];
         fiber->first_point = model->fiber_point_count;

@@ -27,17 +27,31 @@ typedef struct lid_state {
     bool still;
 } lid_state;
 
+/* Activation of the muscles that lift the upper lid of this eye. */
+static float levator(const ris_rig *rig, uint32_t eye)
+{
+    float most = 0.0f;
+    for (uint32_t m = 0; m < rig->model->muscle_count; ++m) {
+        const ris_muscle *muscle = &rig->model->muscle[m];
+        if (muscle->lid_eye == eye + 1) {
+            most = f_max(most, rig->activation[m]);
+        }
+    }
+    return most;
+}
+
 static lid_state read_state(const ris_rig *rig, const float *beside, uint32_t eye)
 {
+    const float lift = levator(rig, eye);
     const float upper = beside[RIS__LID_UPPER_L + eye], pitch = beside[RIS__EYE_PITCH_L + eye] * DEG;
     lid_state s = {.closed = f_clamp(upper, 0.0f, 1.0f), .lower = beside[RIS__LID_LOWER_L + eye]};
-    const float wish = f_max(-upper, 0.0f) * WIDE_RAD + f_max(pitch, 0.0f) * UPPER_FOLLOWS;
+    const float wish = (f_max(-upper, 0.0f) + lift) * WIDE_RAD + f_max(pitch, 0.0f) * UPPER_FOLLOWS;
     const float more = f_max(wish - FOLD_KNEE_RAD, 0.0f) / FOLD_ROOM_RAD;
     s.raise = f_min(wish, FOLD_KNEE_RAD) + FOLD_ROOM_RAD * more / (1.0f + more);
     s.sink = f_max(-pitch, 0.0f) * UPPER_FOLLOWS;
     s.pitch = pitch * LOWER_FOLLOWS;
     s.gaze = ris__rigid_rotate(&rig->eye[eye], v3(0, 0, 1));
-    s.still = upper == 0.0f && s.lower == 0.0f && rig->eye[eye].identity;
+    s.still = upper == 0.0f && lift == 0.0f && s.lower == 0.0f && rig->eye[eye].identity;
     return s;
 }
 

@@ -61,7 +61,7 @@ ris_vec3 ris__contract_slit(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, float c)
 }
 
 ris_vec3 ris__contract_lip(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, ris_vec3 side, uint32_t j, uint32_t f,
-                           float c)
+                           float c, float tie)
 {
     const ris_vec3 axis = v3_unit_or(v3_sub(a1, a0), v3(0, 0, 1)), from = v3_sub(p, a0);
     const float out = v3_dot(axis, from), goal = v3_distance(a0, a1);
@@ -69,8 +69,10 @@ ris_vec3 ris__contract_lip(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, ris_vec3 side, 
     const ris_vec3 across = v3_sub(from, v3_scale(axis, out));
     const ris_vec3 beside = v3_scale(side, v3_dot(side, across)), above = v3_sub(across, beside);
     ris_vec3 q = v3_mad(p, -c, beside);
-    q = v3_mad(q, -c * (RIS__LIP_ABOVE_OUTER + (RIS__LIP_ABOVE_INNER - RIS__LIP_ABOVE_OUTER) * inner), above);
-    return v3_mad(q, c * (RIS__LIP_OUTER + (1.0f - RIS__LIP_OUTER) * inner) * (goal - out), axis);
+    const float thicken = RIS__LIP_ABOVE_OUTER + (RIS__LIP_ABOVE_INNER - RIS__LIP_ABOVE_OUTER) * inner;
+    q = v3_mad(q, -c * (thicken + tie * (RIS__LIP_ABOVE_TIED - thicken)), above);
+    const float forward = 1.0f - RIS__LIP_TIED * tie;
+    return v3_mad(q, forward * c * (RIS__LIP_OUTER + (1.0f - RIS__LIP_OUTER) * inner) * (goal - out), axis);
 }
 
 /* Unit vector from one end of a sphincter to the other, across its axis; zero for a closed ring. */
@@ -82,15 +84,35 @@ static ris_vec3 ring_side(const ris_model *model, const ris_muscle *muscle)
     return v3_unit_or(v3_mad(d, -v3_dot(axis, d), axis), none);
 }
 
+/* The ring of a lip, its ends at the corners. */
+static void contract_lip(ris_rig *rig, uint32_t m, const float *pose, ris_vec3 side, float c)
+{
+    const ris_model *model = rig->model;
+    const ris_muscle *muscle = &model->muscle[m];
+    float tie[2] = {0};
+    for (uint32_t k = 0; k < model->muscle_count; ++k) {
+        if (model->muscle[k].tied_ring == m) {
+            float *end = &tie[model->muscle[k].tied_end];
+            *end = f_max(*end, f_clamp(pose[k], 0.0f, 1.0f));
+        }
+    }
+    for (uint32_t f = 0; f < muscle->fiber_count; ++f) {
+        const uint32_t first = model->fiber[muscle->first_fiber + f].first_point;
+        for (uint32_t i = 0; i < muscle->point_count; ++i) {
+            const float half = f_smoothstep((float)i / (float)(muscle->point_count - 1));
+            const float here = tie[0] + half * (tie[1] - tie[0]);
+            rig->q[first + i] = ris__contract_lip(rig->p[first + i], muscle->axis[0], muscle->axis[1], side,
+                                                  f, muscle->fiber_count, c, here);
+        }
+    }
+}
+
 /* Point p of fibre f of a sphincter. */
 static ris_vec3 contract_ring(const ris_muscle *muscle, const ris_vec3 axis[2], ris_vec3 p, uint32_t f,
-                              float c, const ris_vec3 *side)
+                              float c)
 {
     if (!(c > 0.0f)) {
         return p;
-    }
-    if (side) {
-        return ris__contract_lip(p, axis[0], axis[1], *side, f, muscle->fiber_count, c);
     }
     return muscle->def->closes_on_line
                ? ris__contract_slit(p, axis[0], axis[1], c)
@@ -116,6 +138,10 @@ void ris__muscle_contract(ris_rig *rig, const float *pose)
         const ris_vec3 side = ring_side(model, muscle);
         const bool lip = !kaehler && muscle->kind == RIS_MUSCLE_SPHINCTER && !muscle->def->closes_on_line &&
                          v3_dot(side, side) > 0.5f;
+        if (lip && c > 0.0f) {
+            contract_lip(rig, m, pose, side, c);
+            continue;
+        }
         for (uint32_t f = 0; f < muscle->fiber_count; ++f) {
             const uint32_t first = model->fiber[muscle->first_fiber + f].first_point;
             if (muscle->kind == RIS_MUSCLE_LINEAR) { /* between bones, these alone decide the length */
@@ -124,7 +150,7 @@ void ris__muscle_contract(ris_rig *rig, const float *pose)
                 continue;
             }
             for (uint32_t i = 0; i < muscle->point_count; ++i) {
-                rig->q[first + i] = contract_ring(muscle, axis, rig->p[first + i], f, c, lip ? &side : NULL);
+                rig->q[first + i] = contract_ring(muscle, axis, rig->p[first + i], f, c);
             }
         }
     }

@@ -112,11 +112,14 @@ ris_vec3 ris__contract_sphincter(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, float a, 
 /* A lip (default tissue): it draws together sideways and comes forward along the axis as a sphincter with
  * a = 1, the outer fibres by the share RIS__LIP_OUTER of what the inner ones do, but grows thicker. side:
  * unit, from corner to corner. */
+/* tie 0..1: how far incisivi tie the ring to the bone; then it presses the lip flat against the teeth. */
+#define RIS__LIP_ABOVE_TIED 0.6f
+#define RIS__LIP_TIED 1.25f
 #define RIS__LIP_OUTER 0.6f
 #define RIS__LIP_ABOVE_OUTER (-0.5f)
 #define RIS__LIP_ABOVE_INNER 0.5f
 ris_vec3 ris__contract_lip(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, ris_vec3 side, uint32_t j, uint32_t f,
-                           float c);
+                           float c, float tie);
 /* A sphincter that closes on a line: p goes the share c of its way to the nearest point of a0-a1. */
 ris_vec3 ris__contract_slit(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, float c);
 /* KA-33. Moves n points to their rest distance from the centroid weighted with 1 + lambda c; rest gives

@@ -287,6 +287,33 @@ static void wide_and_gaze(void **state)
     assert_in_range((int)(margin_lift(LOWER) * 100.0f), 80, 220);
 }
 
+/* AU5: the levator moves the lid as the channel does, one eye at a time; a closed lid stays closed. */
+static void the_levator_lifts_the_lid(void **state)
+{
+    (void)state;
+    hold(-1, 0, 0, 0);
+    memcpy(other, x, model->node_count * sizeof *other);
+    memset(pose, 0, model->channel_count * sizeof *pose);
+    set("levator_palpebrae_superioris.L", 1);
+    settle();
+    const float lift = margin_lift(UPPER);
+    print_message("levator palpebrae: lid %.2f mm up\n", (double)lift);
+    assert_true(lift > 1.8f);
+    assert_outside();
+    for (uint32_t i = 0; i < model->node_count; ++i) {
+        const float side = rest[i].x;
+        const ris_vec3 wanted = v4_xyz(side > 0.0f ? other[i] : rest[i]);
+        assert_true(v3_distance(v4_xyz(x[i]), wanted) < 0.05f);
+    }
+    set("levator_palpebrae_superioris.L", 0.5f);
+    settle();
+    assert_true(margin_lift(UPPER) > 0.4f * lift && margin_lift(UPPER) < 0.8f * lift);
+    set("levator_palpebrae_superioris.L", 1);
+    set("lid.upper.L", 1);
+    settle();
+    assert_true(widest_gap() < GAP_MM);
+}
+
 /* One eye at a time is the mirror image of the other, and moves nothing on its side. */
 static void one_eye_mirrors(void **state)
 {
@@ -344,11 +371,9 @@ static void blink(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(closed_lids_meet),
-        cmocka_unit_test(lids_stay_off_the_eye),
-        cmocka_unit_test(wide_and_gaze),
-        cmocka_unit_test(one_eye_mirrors),
-        cmocka_unit_test(blink),
+        cmocka_unit_test(closed_lids_meet), cmocka_unit_test(lids_stay_off_the_eye),
+        cmocka_unit_test(wide_and_gaze),    cmocka_unit_test(the_levator_lifts_the_lid),
+        cmocka_unit_test(one_eye_mirrors),  cmocka_unit_test(blink),
     };
     return cmocka_run_group_tests(tests, open_head, close_head);
 }

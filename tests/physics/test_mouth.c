@@ -215,6 +215,77 @@ static void lips_meet_and_part(void **state)
     assert_true(opening() > closed + 6.0f);
 }
 
+/* Triangles of lips and mouth whose normal points against the mean of those around it, and at rest does
+ * not. */
+static float agreement(const ris_vec4 *p, uint32_t t)
+{
+    const uint32_t *v = model->triangle + 3 * (size_t)t;
+    ris_vec3 around = {0};
+    for (uint32_t c = 0; c < 3; ++c) {
+        for (uint32_t k = fan_start[v[c]]; k < fan_start[v[c] + 1]; ++k) {
+            if (fan[k] != t) {
+                around = v3_add(around, triangle_cross(p, model->triangle + 3 * (size_t)fan[k]));
+            }
+        }
+    }
+    return v3_dot(triangle_cross(p, v), around);
+}
+
+static uint32_t turned_over(void)
+{
+    uint32_t count = 0;
+    for (uint32_t t = 0; t < model->triangle_count; ++t) {
+        const uint32_t *v = model->triangle + 3 * (size_t)t;
+        if (soft[v[0]] || soft[v[1]] || soft[v[2]]) {
+            count += agreement(x, t) < 0.0f && agreement(model->rest_position, t) >= 0.0f;
+        }
+    }
+    return count;
+}
+
+/* Farthest forward of the lips' red, near the midline, mm. */
+static float farthest_out(const ris_vec4 *p)
+{
+    float out = -1e9f;
+    for (uint32_t i = 0; i < model->node_count; ++i) {
+        out = lips[i] && ring[i] >= 2 && ring[i] <= 7 && fabsf(p[i].x) < 12.0f ? f_max(out, p[i].z) : out;
+    }
+    return out;
+}
+
+/* Incisivi draw the corners in and turn the pout into a press: flat lips against the teeth. */
+static void incisivi_press_the_lips(void **state)
+{
+    (void)state;
+#define ORIS "orbicularis_oris_superior=1,orbicularis_oris_inferior=1"
+#define INCISIVI "incisivus_labii_superioris=1,incisivus_labii_inferioris=1"
+    const ris_vec4 *rest = model->rest_position;
+    hold(INCISIVI);
+    assert_true(mouth_width(x) < mouth_width(rest) - 4.0f);
+    assert_true(fabsf(farthest_out(x) - farthest_out(rest)) < 1.0f);
+    hold(ORIS "," INCISIVI);
+    const float pressed[2] = {profile(x, false), profile(x, true)};
+    print_message("press: red %.2f mm out, opening %.2f mm, profiles x %.3f %.3f\n",
+                  (double)(farthest_out(x) - farthest_out(rest)), (double)opening(),
+                  (double)(pressed[0] / profile(rest, false)), (double)(pressed[1] / profile(rest, true)));
+    assert_true(farthest_out(x) < farthest_out(rest) - 0.5f && opening() < 0.2f);
+    assert_true(turned_over() == 0);
+    hold(ORIS);
+    assert_true(farthest_out(x) > farthest_out(rest) + 6.0f);
+    assert_true(pressed[0] < profile(x, false) && pressed[1] < profile(x, true));
+    hold(ORIS ",incisivus_labii_superioris.L=1"); /* one side ties one half of one lip */
+    float left = 0.0f, right = 0.0f, below = 0.0f;
+    for (uint32_t i = 0; i < model->node_count; ++i) {
+        const float side = rest[i].x, out = x[i].z - rest[i].z;
+        if (ring[i] >= 3 && ring[i] <= 6 && fabsf(side) > 8.0f && fabsf(side) < 18.0f) {
+            left = !lower[i] && side > 0.0f ? f_max(left, out) : left;
+            right = !lower[i] && side < 0.0f ? f_max(right, out) : right;
+            below = lower[i] ? f_max(below, out) : below;
+        }
+    }
+    assert_true(left < 0.7f * right && below > 0.8f * right);
+}
+
 static ris_vec3 moved(uint32_t i)
 {
     return v3_sub(v4_xyz(x[i]), v4_xyz(model->rest_position[i]));
@@ -260,34 +331,6 @@ static void the_lining_follows_the_lips(void **state)
     }
 }
 
-/* Triangles of lips and mouth whose normal points against the mean of those around it, and at rest does
- * not. */
-static float agreement(const ris_vec4 *p, uint32_t t)
-{
-    const uint32_t *v = model->triangle + 3 * (size_t)t;
-    ris_vec3 around = {0};
-    for (uint32_t c = 0; c < 3; ++c) {
-        for (uint32_t k = fan_start[v[c]]; k < fan_start[v[c] + 1]; ++k) {
-            if (fan[k] != t) {
-                around = v3_add(around, triangle_cross(p, model->triangle + 3 * (size_t)fan[k]));
-            }
-        }
-    }
-    return v3_dot(triangle_cross(p, v), around);
-}
-
-static uint32_t turned_over(void)
-{
-    uint32_t count = 0;
-    for (uint32_t t = 0; t < model->triangle_count; ++t) {
-        const uint32_t *v = model->triangle + 3 * (size_t)t;
-        if (soft[v[0]] || soft[v[1]] || soft[v[2]]) {
-            count += agreement(x, t) < 0.0f && agreement(model->rest_position, t) >= 0.0f;
-        }
-    }
-    return count;
-}
-
 /* Every muscle alone and both sides, and the jaw. */
 static void no_channel_turns_the_mouth_over(void **state)
 {
@@ -331,9 +374,8 @@ static void no_channel_turns_the_mouth_over(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_pout_thickens_and_a_smile_thins),
-        cmocka_unit_test(lips_meet_and_part),
-        cmocka_unit_test(the_lining_follows_the_lips),
+        cmocka_unit_test(a_pout_thickens_and_a_smile_thins), cmocka_unit_test(lips_meet_and_part),
+        cmocka_unit_test(incisivi_press_the_lips),           cmocka_unit_test(the_lining_follows_the_lips),
         cmocka_unit_test(no_channel_turns_the_mouth_over),
     };
     return cmocka_run_group_tests(tests, open_head, close_head);

@@ -163,6 +163,13 @@ static void test_muscle_keys(void **state)
     assert_int_equal(m->attach[1], 4);
     assert_string_equal(m->source, "a book");
     ris_head_finish(&head);
+    scratch_write("muscles.json",
+                  MUSCLES_HEAD "{\"name\":\"a.L\",\"kind\":\"linear\",\"grid\":" GRID
+                               ",\"acts_on\":\"lid\"},{\"name\":\"a.R\",\"mirror_of\":\"a.L\"}]}");
+    expect_loads(&head);
+    assert_int_equal(head.muscle[0].acts_on, RIS_ACTS_ON_LID);
+    assert_int_equal(head.muscle[1].acts_on, RIS_ACTS_ON_LID);
+    ris_head_finish(&head);
 }
 
 /* A muscle between bones that drives the jaw; its mirror image drives it to the other side. */
@@ -446,6 +453,18 @@ static void test_refuses_muscles(void **state)
     expect_refused("muscles.json",
                    MUSCLES_HEAD "{\"name\":\"a\",\"kind\":\"linear\",\"grid\":" GRID ",\"au\":[\"12\"]}]}",
                    "muscles[0].au[0]: expected an action unit such as \"AU12\", found \"12\"");
+    expect_refused("muscles.json",
+                   MUSCLES_HEAD "{\"name\":\"a\",\"kind\":\"linear\",\"grid\":" GRID
+                                ",\"acts_on\":\"ear\"}]}",
+                   "muscles[0].acts_on: expected one of skin, lip, lid, found \"ear\"");
+    expect_refused("muscles.json",
+                   MUSCLES_HEAD "{\"name\":\"a\",\"kind\":\"linear\",\"grid\":" GRID
+                                ",\"acts_on\":\"lid\"}]}",
+                   "muscles[0].acts_on: expected lid only for a muscle with a side, found \"lid\"");
+    expect_refused("muscles.json",
+                   MUSCLES_HEAD "{\"name\":\"a\",\"kind\":\"sphincter\",\"grid\":" GRID
+                                ",\"axis\":[[0,0,10],[0,0,20]],\"acts_on\":\"lip\"}]}",
+                   "muscles[0].acts_on: expected skin for a sphincter, found \"lip\"");
     expect_refused("muscles.json", MUSCLES_HEAD MUSCLE_L ",\n" MUSCLE_L "]}",
                    "muscles.json:2:9: muscles[1].name: the muscle \"risorius.L\" is there already");
     expect_refused("muscles.json",

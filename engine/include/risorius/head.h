@@ -38,12 +38,17 @@ typedef enum ris_bone {
 } ris_bone;
 
 /* One muscle of muscles.json, mirrored records already expanded (KA-38, KA-44). */
+/* What a muscle moves: the skin; also the lip in whose ring it ends, which it ties to the bone; or the upper lid
+ * of its side and no skin. */
+typedef enum ris_acts_on { RIS_ACTS_ON_SKIN, RIS_ACTS_ON_LIP, RIS_ACTS_ON_LID } ris_acts_on;
+
 typedef struct ris_muscle_def {
     char name[RIS_NAME_SIZE]; /* snake-case Latin with .L/.R */
     ris_muscle_kind kind;
     ris_bone bone;     /* AUTO, SKULL or JAW */
     ris_bone end_bone; /* of the last row: SKULL or JAW of a muscle between bones, else AUTO (the skin) */
     float drives[3];   /* what activation 1 adds to jaw.open, jaw.forward, jaw.side */
+    ris_acts_on acts_on;
     uint32_t rows, columns;
     ris_vec3 *grid;   /* row 0 = fixed end, mm (rows x columns) */
     ris_vec3 axis[2]; /* sphincter axis a0, a1, mm */

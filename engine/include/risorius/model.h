@@ -35,6 +35,9 @@ typedef struct ris_muscle {
     uint32_t first_fiber;
     float max_shortening, insertion_start, lip_drag_power, radius_mm, gain;
     ris_vec3 axis[2];
+    uint32_t tied_ring; /* ring of the lip that it ties to the bone, UINT32_MAX: none */
+    uint8_t lid_eye;    /* eye whose upper lid it lifts: 1 = L, 2 = R, 0 = none */
+    uint8_t tied_end;   /* half of the ring: 0 from its first point, 1 from its last */
     const ris_muscle_def *def;
 } ris_muscle;
 
