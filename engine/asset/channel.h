@@ -11,3 +11,7 @@ typedef struct ris_beside_channel {
 
 extern const ris_beside_channel ris__beside_channel[];
 extern const uint32_t ris__beside_channel_count;
+
+/* Behind them: the movable centre (KA-32) of each sphincter that closes on a point, `<sphincter>.protrude` with the side at the
+ * end, 0..1. False if the muscle has none; out is then "". A name that does not fit is cut off. */
+bool ris__protrude_channel(const ris_muscle_def *def, char out[RIS_NAME_SIZE]);

@@ -139,17 +139,29 @@ ris_result ris__head_expressions_read(const ris_json *json, ris_head *head, ris_
         (result = ris__json_check_object(&root, keys, err))) {
         return result;
     }
-    uint32_t count = head->muscle_count + ris__beside_channel_count;
-    const char **channel = malloc(count * sizeof *channel);
-    if (!channel) {
-        return ris_fail(err, RIS_ERROR_MEMORY, "%s: no memory for %u names", json->name, count);
+    uint32_t count = 0;
+    const size_t room = 2 * (size_t)head->muscle_count + ris__beside_channel_count;
+    const char **channel = malloc(room * sizeof *channel);
+    char(*protrude)[RIS_NAME_SIZE] = malloc((head->muscle_count + 1u) * sizeof *protrude);
+    if (!channel || !protrude) {
+        free(channel);
+        free(protrude);
+        return ris_fail(err, RIS_ERROR_MEMORY, "%s: no memory for %zu names", json->name, room);
     }
-    for (uint32_t i = 0; i < count; i++) {
-        channel[i] =
-            i < head->muscle_count ? head->muscle[i].name : ris__beside_channel[i - head->muscle_count].name;
+    for (uint32_t i = 0; i < head->muscle_count; i++) {
+        channel[count++] = head->muscle[i].name;
+    }
+    for (uint32_t i = 0; i < ris__beside_channel_count; i++) {
+        channel[count++] = ris__beside_channel[i].name;
+    }
+    for (uint32_t i = 0; i < head->muscle_count; i++) {
+        if (ris__protrude_channel(&head->muscle[i], protrude[i])) {
+            channel[count++] = protrude[i];
+        }
     }
     ris_scope scope = {.channel = channel, .channel_count = count};
     result = ris__expressions_read(&list, &scope, &head->expression, &head->expression_count, err);
     free(channel);
+    free(protrude);
     return result;
 }

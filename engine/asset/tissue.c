@@ -35,6 +35,8 @@ ris_tissue_def ris_default_tissue(void)
         .muscle_anchor = 10,
         .muscle_radius_mm = 10,
         .constraint_lambda = 30,
+        .bulge = 1,
+        .bulge_kaehler = 5,
         .substeps = 8,
         .anchor_region_count = sizeof anchors / sizeof anchors[0],
     };
@@ -128,6 +130,8 @@ static ris_result read_numbers(const ris_json_at *at, ris_tissue_def *t, ris_err
         {"muscle_anchor", 0, MAX_STIFFNESS, &t->muscle_anchor},
         {"muscle_radius_mm", 0, 100, &t->muscle_radius_mm},
         {"constraint_lambda", 0, 1e4, &t->constraint_lambda},
+        {"bulge", 0, 10, &t->bulge},
+        {"bulge_kaehler", 0, 10, &t->bulge_kaehler},
     };
     for (size_t i = 0; i < sizeof number / sizeof number[0]; i++) {
         ris_json_at value = ris__json_key(at, number[i].key);
@@ -142,11 +146,27 @@ static ris_result read_numbers(const ris_json_at *at, ris_tissue_def *t, ris_err
 
 ris_result ris__tissue_read(const ris_json_at *at, ris_head *head, ris_error *err)
 {
-    static const char *const keys[] = {
-        "model",       "density_kg_m3", "skin_mm",          "modulus",           "switch",      "law",
-        "compression", "bending",       "stiffness_scale",  "damping_per_s",     "damping_g_s", "mass_g",
-        "bone_anchor", "muscle_anchor", "muscle_radius_mm", "constraint_lambda", "substeps",    "anchors",
-        NULL};
+    static const char *const keys[] = {"model",
+                                       "density_kg_m3",
+                                       "skin_mm",
+                                       "modulus",
+                                       "switch",
+                                       "law",
+                                       "compression",
+                                       "bending",
+                                       "stiffness_scale",
+                                       "damping_per_s",
+                                       "damping_g_s",
+                                       "mass_g",
+                                       "bone_anchor",
+                                       "muscle_anchor",
+                                       "muscle_radius_mm",
+                                       "constraint_lambda",
+                                       "substeps",
+                                       "anchors",
+                                       "bulge",
+                                       "bulge_kaehler",
+                                       NULL};
     static const char *const models[] = {"risorius", "kaehler", NULL}, *const laws[] = {"continuous", "jump",
                                                                                         NULL};
     ris_tissue_def *t = &head->tissue;

@@ -177,11 +177,30 @@ uint32_t ris_model_channel(const ris_model *model, const char *name)
     return UINT32_MAX;
 }
 
+/* The channel of the movable centre of muscle m, if it has one. */
+static ris_result add_protrude(ris_model *model, uint32_t m, ris_error *err)
+{
+    char name[RIS_NAME_SIZE];
+    model->muscle[m].protrude_channel = UINT32_MAX;
+    if (!ris__protrude_channel(model->muscle[m].def, name)) {
+        return RIS_OK;
+    }
+    if (strlen(name) + 1 == RIS_NAME_SIZE) {
+        return ris_fail(err, RIS_ERROR_DATA, "muscle %s: its name leaves no room for that of its channel %s",
+                        model->muscle[m].name, name);
+    }
+    ris_channel *channel = &model->channel[model->channel_count];
+    memcpy(channel->name, name, sizeof channel->name);
+    channel->maximum = 1.0f;
+    model->muscle[m].protrude_channel = model->channel_count++;
+    return RIS_OK;
+}
+
 ris_result ris__bake_channels(ris_bake *bake, ris_error *err)
 {
     ris_model *model = bake->model;
     const uint32_t fixed = ris__beside_channel_count;
-    ris_result result = ris__model_alloc(&model->channel, (size_t)model->muscle_count + fixed,
+    ris_result result = ris__model_alloc(&model->channel, 2 * (size_t)model->muscle_count + fixed,
                                          sizeof *model->channel, "channels", err);
     if (result != RIS_OK) {
         return result;
@@ -197,5 +216,8 @@ ris_result ris__bake_channels(ris_bake *bake, ris_error *err)
         channel->maximum = ris__beside_channel[k].maximum;
     }
     model->channel_count = model->muscle_count + fixed;
-    return RIS_OK;
+    for (uint32_t m = 0; result == RIS_OK && m < model->muscle_count; ++m) {
+        result = add_protrude(model, m, err);
+    }
+    return result;
 }

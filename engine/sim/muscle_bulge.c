@@ -3,14 +3,13 @@
 
 #include "model/vec3.h"
 
-#define NU_CONTRACT 5.0f
 #define NU_STRETCH 1.0f
-#define NU_LIP 1.0f /* default tissue: what keeps the volume of a contracting lip, and does not blow it up */
+#define NU_BELLY 5.0f /* between bones: what cannot shorten has to swell */
 #define SMALLEST 0.1f
 
-float ris__bulge_factor(ris_muscle_kind kind, float rho, uint32_t i, uint32_t count)
+float ris__bulge_factor(ris_muscle_kind kind, float nu, float rho, uint32_t i, uint32_t count)
 {
-    const float nu = rho > 1.0f ? NU_STRETCH : NU_CONTRACT;
+    nu = rho > 1.0f ? NU_STRETCH : nu;
     float shape = 1.0f;
     if (kind == RIS_MUSCLE_LINEAR && count >= 3) {
         const float s = 2.0f * (float)i / (float)(count - 1) - 1.0f;
@@ -53,8 +52,8 @@ static void bulge_between_bones(ris_rig *rig, uint32_t m)
         const float rho = rig->jaw.identity ? 1.0f : stretch(rig, fiber, muscle->point_count);
         for (uint32_t s = 0; s < segments; ++s) {
             rig->bulge[fiber->first_segment + s] =
-                ris__bulge_factor(muscle->kind, rho, s, segments) *
-                ris__bulge_factor(muscle->kind, 1.0f - rig->contraction[m], s, segments);
+                ris__bulge_factor(muscle->kind, NU_BELLY, rho, s, segments) *
+                ris__bulge_factor(muscle->kind, NU_BELLY, 1.0f - rig->contraction[m], s, segments);
         }
     }
 }
@@ -62,22 +61,21 @@ static void bulge_between_bones(ris_rig *rig, uint32_t m)
 void ris__muscle_bulge(ris_rig *rig)
 {
     const ris_model *model = rig->model;
-    const bool kaehler = (model->push.flags & RIS_TISSUE_FLAG_KAEHLER) != 0;
+    const ris_tissue_def *tissue = &model->head->tissue;
+    const float nu = model->push.flags & RIS_TISSUE_FLAG_KAEHLER ? tissue->bulge_kaehler : tissue->bulge;
     for (uint32_t m = 0; m < model->muscle_count; ++m) {
         const ris_muscle *muscle = &model->muscle[m];
         if (muscle->def->end_bone != RIS_BONE_AUTO) {
             bulge_between_bones(rig, m);
             continue;
         }
-        const bool lip = !kaehler && muscle->kind == RIS_MUSCLE_SPHINCTER && !muscle->def->closes_on_line;
         for (uint32_t f = 0; f < muscle->fiber_count; ++f) {
             const ris_fiber *fiber = &model->fiber[muscle->first_fiber + f];
             const float rho = length_of(rig->q + fiber->first_point, muscle->point_count) /
                               length_of(rig->p + fiber->first_point, muscle->point_count);
             for (uint32_t s = 0; s + 1 < muscle->point_count; ++s) {
                 rig->bulge[fiber->first_segment + s] =
-                    lip ? f_max(1.0f + NU_LIP * (1.0f - rho), SMALLEST)
-                        : ris__bulge_factor(muscle->kind, rho, s, muscle->point_count - 1);
+                    ris__bulge_factor(muscle->kind, nu, rho, s, muscle->point_count - 1);
             }
         }
     }

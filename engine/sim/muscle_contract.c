@@ -75,6 +75,14 @@ ris_vec3 ris__contract_lip(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, ris_vec3 side, 
     return v3_mad(q, forward * c * (RIS__LIP_OUTER + (1.0f - RIS__LIP_OUTER) * inner) * (goal - out), axis);
 }
 
+ris_vec3 ris__protrude(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, uint32_t j, uint32_t f)
+{
+    const ris_vec3 axis = v3_unit_or(v3_sub(a1, a0), v3(0, 0, 1));
+    const float inner = f > 1 ? (float)j / (float)(f - 1) : 1.0f;
+    const float left = f_max(v3_distance(a0, a1) - v3_dot(axis, v3_sub(p, a0)), 0.0f);
+    return v3_scale(axis, RIS__PROTRUDE * left * (RIS__LIP_OUTER + (1.0f - RIS__LIP_OUTER) * inner));
+}
+
 /* Unit vector from one end of a sphincter to the other, across its axis; zero for a closed ring. */
 static ris_vec3 ring_side(const ris_model *model, const ris_muscle *muscle)
 {
@@ -84,73 +92,84 @@ static ris_vec3 ring_side(const ris_model *model, const ris_muscle *muscle)
     return v3_unit_or(v3_mad(d, -v3_dot(axis, d), axis), none);
 }
 
-/* The ring of a lip, its ends at the corners. */
-static void contract_lip(ris_rig *rig, uint32_t m, const float *pose, ris_vec3 side, float c)
+/* How a sphincter contracts this tick. */
+typedef struct ring_pose {
+    ris_vec3 axis[2], side;
+    float c, protrude; /* 0..1 */
+    float tie[2];      /* of the halves of a lip to the bone, 0..1 */
+    bool literal, lip;
+} ring_pose;
+
+static ring_pose pose_ring(const ris_rig *rig, uint32_t m, float c, const float *pose)
 {
     const ris_model *model = rig->model;
     const ris_muscle *muscle = &model->muscle[m];
-    float tie[2] = {0};
-    for (uint32_t k = 0; k < model->muscle_count; ++k) {
+    ring_pose ring = {.axis = {muscle->axis[0], muscle->axis[1]},
+                      .side = ring_side(model, muscle),
+                      .c = c,
+                      .literal = (model->push.flags & RIS_TISSUE_FLAG_KAEHLER) != 0};
+    if (muscle->protrude_channel < model->channel_count) {
+        ring.protrude = f_clamp(pose[muscle->protrude_channel], 0.0f, 1.0f);
+    }
+    if (ring.literal && muscle->on_jaw) {
+        ring.axis[0] = ris__rigid_apply(&rig->jaw, ring.axis[0]);
+        ring.axis[1] = ris__rigid_apply(&rig->jaw, ring.axis[1]);
+    }
+    ring.lip = !ring.literal && !muscle->def->closes_on_line && v3_dot(ring.side, ring.side) > 0.5f;
+    for (uint32_t k = 0; ring.lip && k < model->muscle_count; ++k) {
         if (model->muscle[k].tied_ring == m) {
-            float *end = &tie[model->muscle[k].tied_end];
+            float *end = &ring.tie[model->muscle[k].tied_end];
             *end = f_max(*end, f_clamp(pose[k], 0.0f, 1.0f));
         }
     }
-    for (uint32_t f = 0; f < muscle->fiber_count; ++f) {
-        const uint32_t first = model->fiber[muscle->first_fiber + f].first_point;
-        for (uint32_t i = 0; i < muscle->point_count; ++i) {
-            const float half = f_smoothstep((float)i / (float)(muscle->point_count - 1));
-            const float here = tie[0] + half * (tie[1] - tie[0]);
-            rig->q[first + i] = ris__contract_lip(rig->p[first + i], muscle->axis[0], muscle->axis[1], side,
-                                                  f, muscle->fiber_count, c, here);
-        }
-    }
+    return ring;
 }
 
-/* Point p of fibre f of a sphincter. */
-static ris_vec3 contract_ring(const ris_muscle *muscle, const ris_vec3 axis[2], ris_vec3 p, uint32_t f,
-                              float c)
+/* Point p of fibre f of a sphincter. In the default tissue the centre lies at the end of the axis whenever the muscle
+ * contracts, and protruding is an act of its own. along: 0 at the ring's first end, 1 at its last. */
+static ris_vec3 contract_ring(const ris_muscle *muscle, const ring_pose *ring, ris_vec3 p, uint32_t f,
+                              float along)
 {
-    if (!(c > 0.0f)) {
-        return p;
+    const ris_vec3 *axis = ring->axis;
+    ris_vec3 q = p;
+    if (ring->c > 0.0f && ring->lip) {
+        q = ris__contract_lip(p, axis[0], axis[1], ring->side, f, muscle->fiber_count, ring->c,
+                              ring->tie[0] + along * (ring->tie[1] - ring->tie[0]));
+    } else if (ring->c > 0.0f && muscle->def->closes_on_line) {
+        q = ris__contract_slit(p, axis[0], axis[1], ring->c);
+    } else if (ring->c > 0.0f) {
+        q = ris__contract_sphincter(p, axis[0], axis[1], ring->literal ? ring->protrude : 1.0f, f,
+                                    muscle->fiber_count, ring->c);
     }
-    return muscle->def->closes_on_line
-               ? ris__contract_slit(p, axis[0], axis[1], c)
-               : ris__contract_sphincter(p, axis[0], axis[1], 1.0f, f, muscle->fiber_count, c);
+    if (ring->protrude > 0.0f && !ring->literal) {
+        q = v3_mad(q, ring->protrude, ris__protrude(p, axis[0], axis[1], f, muscle->fiber_count));
+    }
+    return q;
 }
 
 void ris__muscle_contract(ris_rig *rig, const float *pose)
 {
     const ris_model *model = rig->model;
-    const bool kaehler = (model->push.flags & RIS_TISSUE_FLAG_KAEHLER) != 0;
     for (uint32_t m = 0; m < model->muscle_count; ++m) {
         const ris_muscle *muscle = &model->muscle[m];
         const float activation = f_clamp(pose[m], 0.0f, 1.0f);
         const float c = f_min(activation * muscle->max_shortening, LARGEST_CONTRACTION);
+        const bool sphincter = muscle->kind == RIS_MUSCLE_SPHINCTER;
+        const ring_pose ring = sphincter ? pose_ring(rig, m, c, pose) : (ring_pose){.literal = true};
         rig->activation[m] = activation;
-        rig->activity[m] = f_min(activation / ACTIVITY_FULL, 1.0f);
+        rig->activity[m] =
+            f_min(f_max(activation, ring.literal ? 0.0f : ring.protrude) / ACTIVITY_FULL, 1.0f);
         rig->contraction[m] = c;
-        ris_vec3 axis[2] = {muscle->axis[0], muscle->axis[1]};
-        if (kaehler && muscle->on_jaw) {
-            axis[0] = ris__rigid_apply(&rig->jaw, axis[0]);
-            axis[1] = ris__rigid_apply(&rig->jaw, axis[1]);
-        }
-        const ris_vec3 side = ring_side(model, muscle);
-        const bool lip = !kaehler && muscle->kind == RIS_MUSCLE_SPHINCTER && !muscle->def->closes_on_line &&
-                         v3_dot(side, side) > 0.5f;
-        if (lip && c > 0.0f) {
-            contract_lip(rig, m, pose, side, c);
-            continue;
-        }
         for (uint32_t f = 0; f < muscle->fiber_count; ++f) {
             const uint32_t first = model->fiber[muscle->first_fiber + f].first_point;
-            if (muscle->kind == RIS_MUSCLE_LINEAR) { /* between bones, these alone decide the length */
+            if (!sphincter) { /* between bones, these alone decide the length */
                 const float shorter = muscle->def->end_bone == RIS_BONE_AUTO ? c : 0.0f;
                 ris__contract_linear(rig->p + first, muscle->point_count, shorter, rig->q + first);
                 continue;
             }
             for (uint32_t i = 0; i < muscle->point_count; ++i) {
-                rig->q[first + i] = contract_ring(muscle, axis, rig->p[first + i], f, c);
+                rig->q[first + i] = contract_ring(muscle, &ring, rig->p[first + i], f,
+                                                  f_smoothstep((float)i / (float)(muscle->point_count - 1)));
             }
         }
     }

@@ -120,6 +120,10 @@ ris_vec3 ris__contract_sphincter(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, float a, 
 #define RIS__LIP_ABOVE_INNER 0.5f
 ris_vec3 ris__contract_lip(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, ris_vec3 side, uint32_t j, uint32_t f,
                            float c, float tie);
+/* What full protrusion moves point p of fibre j of f by in the default tissue: along the axis, by the share RIS__PROTRUDE of the way to
+ * its end, the outer fibres less. */
+#define RIS__PROTRUDE 0.15f
+ris_vec3 ris__protrude(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, uint32_t j, uint32_t f);
 /* A sphincter that closes on a line: p goes the share c of its way to the nearest point of a0-a1. */
 ris_vec3 ris__contract_slit(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, float c);
 /* KA-33. Moves n points to their rest distance from the centroid weighted with 1 + lambda c; rest gives
@@ -143,7 +147,7 @@ typedef struct ris_network {
 void ris__network_run(const ris_network *net, ris_vec3 *x, ris_vec3 *half, ris_vec3 *previous);
 /* KA-35. Weight of straightening for closed-loop lengths now and at rest. */
 float ris__relax_weight(float length_mm, float rest_length_mm);
-/* KA-36. Height scale of segment i of count for length ratio rho. */
-float ris__bulge_factor(ris_muscle_kind kind, float rho, uint32_t i, uint32_t count);
+/* KA-36. Height scale of segment i of count for length ratio rho; nu while it is below 1. */
+float ris__bulge_factor(ris_muscle_kind kind, float nu, float rho, uint32_t i, uint32_t count);
 /* t^power for t in 0..1 from whole powers, linear between them: no libm. */
 float ris__power(float t, float power);

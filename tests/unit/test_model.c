@@ -371,7 +371,7 @@ static void corners_of_the_mouth_are_groups(void **state)
     ris_model_destroy(model);
 }
 
-/* KA-48: muscles first, then the channels beside them, in the order the pose stage counts on. */
+/* KA-48: muscles first, then the channels beside them, in the order the pose stage counts on, then the movable centres. */
 static void channels_are_muscles_then_beside(void **state)
 {
     (void)state;
@@ -383,7 +383,13 @@ static void channels_are_muscles_then_beside(void **state)
     ris_model *model = NULL;
     ris_error err = {0};
     assert_int_equal(ris_scene_model(&def, &model, &err), RIS_OK);
-    assert_int_equal(model->channel_count, model->muscle_count + ris__beside_channel_count);
+    assert_int_equal(model->channel_count, model->muscle_count + ris__beside_channel_count + 2);
+    const uint32_t protrude = ris_model_channel(model, "orbicularis_oris_inferior.protrude");
+    assert_int_equal(protrude, model->channel_count - 1);
+    assert_int_equal(model->muscle[ris_model_channel(model, "orbicularis_oris_inferior")].protrude_channel,
+                     protrude);
+    assert_int_equal(model->muscle[0].protrude_channel, UINT32_MAX);
+    assert_true(model->channel[protrude].minimum == 0.0f && model->channel[protrude].maximum == 1.0f);
     assert_int_equal(ris__beside_channel_count, sizeof order / sizeof order[0]);
     for (uint32_t m = 0; m < model->muscle_count; ++m) {
         assert_string_equal(model->channel[m].name, model->muscle[m].name);
@@ -393,6 +399,12 @@ static void channels_are_muscles_then_beside(void **state)
         assert_string_equal(model->channel[model->muscle_count + k].name, order[k]);
         assert_int_equal(ris_model_channel(model, order[k]), model->muscle_count + k);
     }
+    char name[RIS_NAME_SIZE];
+    ris_muscle_def sphincter = {.kind = RIS_MUSCLE_SPHINCTER, .name = "ring.L"};
+    assert_true(ris__protrude_channel(&sphincter, name));
+    assert_string_equal(name, "ring.protrude.L");
+    sphincter.closes_on_line = true;
+    assert_false(ris__protrude_channel(&sphincter, name));
     assert_int_equal(ris_model_channel(model, "jaw.opn"), UINT32_MAX);
     ris_model_destroy(model);
     ris_model_destroy(NULL);

@@ -136,16 +136,19 @@ static void bulge_factors(void **state) /* KA-36 */
     (void)state;
     const float six[] = {1, 1.9375f, 2.25f, 1.9375f, 1}, four[] = {1, 2.25f, 1};
     for (uint32_t i = 0; i < 5; ++i) {
-        assert_near(ris__bulge_factor(RIS_MUSCLE_LINEAR, 0.75f, i, 5), six[i], 1e-6);
-        assert_near(ris__bulge_factor(RIS_MUSCLE_SPHINCTER, 0.75f, i, 5), 2.25, 1e-6);
-        assert_true(ris__bulge_factor(RIS_MUSCLE_LINEAR, 1.0f, i, 5) == 1.0f);
+        assert_near(ris__bulge_factor(RIS_MUSCLE_LINEAR, 5.0f, 0.75f, i, 5), six[i], 1e-6);
+        assert_near(ris__bulge_factor(RIS_MUSCLE_SPHINCTER, 5.0f, 0.75f, i, 5), 2.25, 1e-6);
+        assert_true(ris__bulge_factor(RIS_MUSCLE_LINEAR, 5.0f, 1.0f, i, 5) == 1.0f);
     }
     for (uint32_t i = 0; i < 3; ++i) {
-        assert_near(ris__bulge_factor(RIS_MUSCLE_LINEAR, 0.75f, i, 3), four[i], 1e-6);
+        assert_near(ris__bulge_factor(RIS_MUSCLE_LINEAR, 5.0f, 0.75f, i, 3), four[i], 1e-6);
     }
-    assert_near(ris__bulge_factor(RIS_MUSCLE_SPHINCTER, 1.25f, 0, 5), 0.75, 1e-6);
-    assert_near(ris__bulge_factor(RIS_MUSCLE_LINEAR, 1.25f, 2, 5), 0.75, 1e-6);
-    assert_true(ris__bulge_factor(RIS_MUSCLE_SPHINCTER, 5.0f, 0, 5) > 0.0f);
+    assert_near(ris__bulge_factor(RIS_MUSCLE_SPHINCTER, 5.0f, 1.25f, 0, 5), 0.75, 1e-6);
+    assert_near(ris__bulge_factor(RIS_MUSCLE_LINEAR, 5.0f, 1.25f, 2, 5), 0.75, 1e-6);
+    assert_near(ris__bulge_factor(RIS_MUSCLE_SPHINCTER, 1.0f, 0.75f, 0, 5), 1.25,
+                1e-6); /* the default tissue's nu */
+    assert_near(ris__bulge_factor(RIS_MUSCLE_SPHINCTER, 1.0f, 1.25f, 0, 5), 0.75, 1e-6);
+    assert_true(ris__bulge_factor(RIS_MUSCLE_SPHINCTER, 5.0f, 5.0f, 0, 5) > 0.0f);
 }
 
 /* KA-37: translation and rotation carry the attached point rigidly; antiparallel and vanished segments

@@ -152,6 +152,7 @@ typedef struct ris_tissue_def {
     float bone_anchor, muscle_anchor; /* kaehler: 30, 10 g/s^2 */
     float muscle_radius_mm;           /* kaehler: 10 mm */
     float constraint_lambda;          /* 30 (KA-33) */
+    float bulge, bulge_kaehler;       /* nu of KA-36: 1 keeps the volume; 5 in the thesis */
     uint32_t substeps;                /* per 1/60 s */
     uint32_t anchor_region_count;
     ris_anchor_region anchor_region[32];

@@ -35,9 +35,10 @@ typedef struct ris_muscle {
     uint32_t first_fiber;
     float max_shortening, insertion_start, lip_drag_power, radius_mm, gain;
     ris_vec3 axis[2];
-    uint32_t tied_ring; /* ring of the lip that it ties to the bone, UINT32_MAX: none */
-    uint8_t lid_eye;    /* eye whose upper lid it lifts: 1 = L, 2 = R, 0 = none */
-    uint8_t tied_end;   /* half of the ring: 0 from its first point, 1 from its last */
+    uint32_t tied_ring;        /* ring of the lip that it ties to the bone, UINT32_MAX: none */
+    uint8_t lid_eye;           /* eye whose upper lid it lifts: 1 = L, 2 = R, 0 = none */
+    uint8_t tied_end;          /* half of the ring: 0 from its first point, 1 from its last */
+    uint32_t protrude_channel; /* of the movable centre (KA-32), UINT32_MAX = none */
     const ris_muscle_def *def;
 } ris_muscle;
 
@@ -131,7 +132,7 @@ typedef struct ris_model {
 
     /* rig */
     uint32_t channel_count, muscle_count, fiber_count, fiber_point_count, segment_count;
-    ris_channel *channel; /* channel m of the first muscle_count is muscle m */
+    ris_channel *channel; /* channel m of the first muscle_count is muscle m, then those beside muscles */
     ris_muscle *muscle;
     ris_fiber *fiber;
     ris_vec3 *fiber_point; /* rest control points p, mm (fiber_point_count) */
