@@ -1,11 +1,14 @@
 /* Triangles turned over. A surface in space has no inverted elements as a plane has, so the neighbours are asked: a
  * triangle is turned over when its normal points against the area-weighted mean of the normals of the triangles that
- * share a vertex with it (not its own), and at rest it does not. The mean is local, so a lip may roll and a lid may turn
+ * share a vertex with it (not its own), and the cosine between the two has fallen by more than a half since rest, so that
+ * one which stands upright among its neighbours is not called turned over for leaning by a degree. The mean is local, so a lip may roll and a lid may turn
  * as a whole; it is taken of several triangles, so a crease between two flat flanks is none until a flank folds back;
  * and a triangle cannot vouch for itself, however large it has grown. */
 #include "measure/measure_impl.h"
 
 #include <stdlib.h>
+
+#define FALL 0.5 /* of the cosine since rest */
 
 enum { STILL, LIPS_AND_LIDS, OTHERS };
 
@@ -141,7 +144,7 @@ ris_result ris__folds_init(ris_folds *out, const ris_model *model, const bool *m
         result = ris__model_alloc(&out->rest, model->triangle_count, sizeof *out->rest, "the triangles", err);
     }
     for (uint32_t t = 0; result == RIS_OK && t < model->triangle_count; ++t) {
-        out->rest[t] = agreement(out, area, t) < 0;
+        out->rest[t] = agreement(out, area, t);
     }
     return result;
 }
@@ -159,8 +162,8 @@ void ris__folds_measure(const ris_folds *folds, const dvec *area, ris_finding ou
 {
     double worst[2] = {0, 0};
     for (uint32_t t = 0; t < folds->model->triangle_count; ++t) {
-        const double cosine = folds->kind[t] && !folds->rest[t] ? agreement(folds, area, t) : 1;
-        if (cosine < 0) {
+        const double cosine = folds->kind[t] ? agreement(folds, area, t) : 1;
+        if (cosine < 0 && cosine < folds->rest[t] - FALL) {
             note(folds, t, cosine, worst, out);
             if (flipped) {
                 ++flipped[t];
@@ -173,8 +176,8 @@ void ris__folds_rest(const ris_folds *folds, ris_finding out[2])
 {
     double worst[2] = {0, 0};
     for (uint32_t t = 0; t < folds->model->triangle_count; ++t) {
-        if (folds->kind[t] && folds->rest[t]) {
-            note(folds, t, -1, worst, out);
+        if (folds->kind[t] && folds->rest[t] < 0) {
+            note(folds, t, folds->rest[t], worst, out);
         }
     }
 }

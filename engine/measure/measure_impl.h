@@ -66,7 +66,7 @@ typedef struct ris_folds {
     uint8_t *kind;          /* of each triangle: 0 still, 1 lips and lids, 2 others (triangle_count) */
     uint32_t *around_start; /* triangles that share a vertex, without itself: CSR (triangle_count + 1) */
     uint32_t *around;
-    bool *rest; /* turned over at rest (triangle_count) */
+    double *rest; /* cosine with the neighbours at rest (triangle_count) */
 } ris_folds;
 
 /* area: vector of each triangle, twice its area along its normal (triangle_count). */

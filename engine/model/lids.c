@@ -314,6 +314,28 @@ static void make_columns(lid_bake *b, int32_t last)
     }
 }
 
+/* Columns fan out towards the corners of the eye, so there the skin behind the margin lies over less of the opening than
+ * its column, or beside it: it turns no farther than down to the lower margin (or the corner) at its own x, else it
+ * would sink past the corner, which stays, and fold over. */
+static void limit_columns(const lid_bake *b)
+{
+    const uint32_t count = sorted_ring(b, b->margin, KIND_LOWER);
+    for (uint32_t i = 0; count > 1 && i < b->model->node_count; ++i) {
+        if (b->ring[i] == NO_RING || b->ring[i] <= b->margin || b->kind[i] != KIND_UPPER) {
+            continue;
+        }
+        ris_lid_node *node = &b->node[i];
+        float s;
+        const uint32_t k = find_segment(b, count, b->model->rest_position[i].x, &s);
+        const float from = elevation(b, b->lower[k]), to = elevation(b, b->lower[k + 1]);
+        const float room = f_max(elevation(b, i) - (from + s * (to - from)), 0.0f);
+        if (room < node->close_rad) {
+            node->close_mm *= room / node->close_rad;
+            node->close_rad = room;
+        }
+    }
+}
+
 /* Weights by what is left of the column: 1 at the margin. Closing spreads the skin of the whole lid, opening
  * slides it under the fold, so its weight stays near 1 for longer. */
 static void weigh(const lid_bake *b, uint32_t i)
@@ -333,8 +355,10 @@ static void weigh(const lid_bake *b, uint32_t i)
     if (node->lining) { /* inside the ball: makes way when the lid opens, stays there when it closes */
         node->weight_open = 1.0f;
     }
-    if (b->ring[i] >= 0 && b->ring[i] < b->margin) { /* its inner edge keeps off the eye */
-        node->close_mm *= (float)b->ring[i] / (float)b->margin;
+    if (b->ring[i] >= 0 &&
+        b->ring[i] < b->margin) { /* its inner edge keeps off the eye, towards the corners all of it */
+        const float near = (float)b->ring[i] / (float)b->margin;
+        node->close_mm *= near + (near > 0.0f ? (1.0f - near) * f_min(2.0f * node->share, 1.0f) : 0.0f);
     }
     node->close_mm *= skin * skin;
 }
@@ -432,6 +456,7 @@ static ris_result bake_eye(ris_bake *bake, uint8_t eye, ris_error *err)
         measure_margin(&b, KIND_UPPER);
         measure_margin(&b, KIND_LOWER);
         make_columns(&b, last);
+        limit_columns(&b);
         finish_nodes(&b);
         keep_nodes(&b);
     }

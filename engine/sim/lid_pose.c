@@ -15,12 +15,17 @@
 #define LOWER_DOWN_RAD (3.6f * DEG) /* lid.lower -1 */
 #define UPPER_FOLLOWS 0.75f         /* share of the eye's pitch */
 #define LOWER_FOLLOWS 0.3f
-#define FULL_MM 0.8f   /* how much a closed lid rounds out between margin and fold */
-#define CLEAR_MM 0.25f /* nearest a moved anchor comes to the eye */
+#define MEET_HALF 0.6f  /* at the corners the lids meet half way ... */
+#define MEET_SHARE 0.6f /* ... where the opening is this share of the widest, on the lower margin as it was */
+#define FULL_MM 0.8f    /* how much a closed lid rounds out between margin and fold */
+#define CLEAR_MM 0.25f  /* nearest a moved anchor comes to the eye */
+#define THICK_SHARE 0.5f /* what lies farther out at rest keeps this share of it ... */
+#define THICK_MM 0.25f   /* ... up to so much, so that a lid pressed on the cornea is not pressed flat */
 
 /* What moves the lids of one eye this tick. */
 typedef struct lid_state {
     float closed;       /* 0..1 */
+    float open_rad;     /* widest opening at rest */
     float raise, sink;  /* upper lid, radians up or down */
     float lower, pitch; /* lower lid: channel -1..1, radians */
     ris_vec3 gaze;      /* unit */
@@ -44,7 +49,9 @@ static lid_state read_state(const ris_rig *rig, const float *beside, uint32_t ey
 {
     const float lift = levator(rig, eye);
     const float upper = beside[RIS__LID_UPPER_L + eye], pitch = beside[RIS__EYE_PITCH_L + eye] * DEG;
-    lid_state s = {.closed = f_clamp(upper, 0.0f, 1.0f), .lower = beside[RIS__LID_LOWER_L + eye]};
+    lid_state s = {.closed = f_clamp(upper, 0.0f, 1.0f),
+                   .open_rad = rig->model->lid_eye[eye].open_rad,
+                   .lower = beside[RIS__LID_LOWER_L + eye]};
     const float wish = (f_max(-upper, 0.0f) + lift) * WIDE_RAD + f_max(pitch, 0.0f) * UPPER_FOLLOWS;
     const float more = f_max(wish - FOLD_KNEE_RAD, 0.0f) / FOLD_ROOM_RAD;
     s.raise = f_min(wish, FOLD_KNEE_RAD) + FOLD_ROOM_RAD * more / (1.0f + more);
@@ -60,7 +67,8 @@ static float lower_turn(const lid_state *s, float share)
 {
     const float up = f_max(s->lower, 0.0f) * LOWER_UP_RAD * (share * share);
     const float down = f_min(s->lower, 0.0f) * LOWER_DOWN_RAD * (share * (2.0f - share));
-    return (up + down) + s->pitch * share;
+    const float meet = MEET_HALF * f_max(1.0f - share / MEET_SHARE, 0.0f) * (share * s->open_rad);
+    return ((up + down) + s->pitch * share) + s->closed * meet;
 }
 
 static float node_turn(const lid_state *s, const ris_lid_node *lid)
@@ -90,7 +98,9 @@ static ris_vec3 clear_eye(const lid_state *s, const ris_lid_eye *eye, const ris_
     const float firm = 0.4f + 0.6f * f_min(4.0f * lid->share, 1.0f); /* corners are tied to the bone */
     const float bulge = (now - (r0 - lid->gap_mm)) * lid->weight_open * firm;
     const float moved = f_clamp(v3_distance(p, rest) + (bulge < 0.0f ? -bulge : bulge), 0.0f, 1.0f);
-    const float gap = lid->gap_mm < CLEAR_MM ? lid->gap_mm + moved * (CLEAR_MM - lid->gap_mm) : CLEAR_MM;
+    const float gap = lid->gap_mm < CLEAR_MM
+                          ? lid->gap_mm + moved * (CLEAR_MM - lid->gap_mm)
+                          : CLEAR_MM + f_min(THICK_SHARE * (lid->gap_mm - CLEAR_MM), THICK_MM);
     return v3_scale(p, f_max(r + bulge, now + gap) / r);
 }
 
