@@ -7,6 +7,8 @@
 #include <string.h>
 
 #define BONE_RAY_MM 15.0 /* bone deeper than this below a vertex is not the one it glides on (errata 28) */
+#define MIDDLE_MM 1e-3f
+#define PLANE_STEPS 12
 #define AREA_UNIT_MM2 25.0f
 #define SMOOTHING_PASSES 2
 
@@ -115,14 +117,26 @@ static void close_bone(bone_surface *bone)
     ris__tri_finish(&bone->mesh);
 }
 
+/* A vertex of the middle plane must not choose a side: to the surface and back to the plane until both meet. */
+static dvec closest_in_plane(const bone_surface *bone, dvec at)
+{
+    for (int step = 0; step < PLANE_STEPS; ++step) {
+        at = ris__bvh_closest(&bone->tree, dv(0.0, at.y, at.z)).at;
+    }
+    return at;
+}
+
 /* Straight below the vertex if there is bone, else the closest point of the bone. */
 static ris_vec3 point_on_bone(const bone_surface *bone, ris_vec3 x, ris_vec3 normal)
 {
+    const bool middle = fabsf(x.x) < MIDDLE_MM;
+    normal.x = middle ? 0.0f : normal.x;
     const dvec at = dv((double)x.x, (double)x.y, (double)x.z),
                down = dv_unit(dv(-(double)normal.x, -(double)normal.y, -(double)normal.z));
     bvh_hit hit = ris__bvh_ray(&bone->tree, at, down, 0.0, BONE_RAY_MM);
     if (!hit.found) {
         hit = ris__bvh_closest(&bone->tree, at);
+        hit.at = middle ? closest_in_plane(bone, hit.at) : hit.at;
     }
     return v3((float)hit.at.x, (float)hit.at.y, (float)hit.at.z);
 }

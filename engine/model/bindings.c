@@ -25,6 +25,7 @@ enum { LIP_UPPER = 1, LIP_LOWER = 2 };
 typedef struct touch {
     uint32_t fiber, segment;
     ris_vec3 local; /* y = +-0.5: the muscle surface on the node's side */
+    ris_vec3 at;    /* the point of the sheet */
     float distance; /* to the sheet, mm */
     float depth;    /* of the sheet below the skin there, mm */
     float facing;   /* n_s . n_d */
@@ -61,6 +62,7 @@ static touch meet_segment(const binder *b, uint32_t m, uint32_t fiber, uint32_t 
     ris_vec3 on_sheet = v3_mad(segment->origin, t.local.x * segment->size.x, segment->along);
     on_sheet = v3_mad(on_sheet, t.local.z * segment->size.z, segment->wide);
     const ris_vec3 d = v3_sub(x, on_sheet);
+    t.at = on_sheet;
     t.distance = v3_length(d);
     t.facing = v3_dot(v3_unit_or(d, segment->up), v4_xyz(model->rest_normal[node]));
     const float near_depth = 0.5f * (depth[0] + depth[1]),
@@ -220,55 +222,52 @@ static ris_result bind_blended(binder *b, uint32_t m, uint32_t node, ris_error *
     return add_binding(b, m, node, list, kept, weight, along, err);
 }
 
-/* Smallest distance / (n_s . n_d) of a node to a muscle; INFINITY if it may not be bound to it. */
-static float nearest_touch(const binder *b, uint32_t m, uint32_t node, touch *out)
+static bool mirrors(ris_vec3 a, ris_vec3 b)
 {
-    const ris_muscle *muscle = &b->bake->model->muscle[m];
+    return v3_distance(a, v3(-b.x, b.y, b.z)) < TWIN_MM;
+}
+
+/* Smallest distance / (n_s . n_d) of a node to any muscle, among touches that mirror `twin` if that is given; INFINITY if there
+ * is none. */
+static float nearest_touch(const binder *b, uint32_t node, const touch *twin, touch *out,
+                           uint32_t *out_muscle)
+{
+    const ris_model *model = b->bake->model;
     const float radius = b->bake->head->tissue.muscle_radius_mm;
-    const bool listed = !muscle->def->attach_auto;
     float best = INFINITY;
-    for (uint32_t f = 0; f < muscle->fiber_count; ++f) {
-        for (uint32_t r = 0; r + 1 < muscle->point_count; ++r) {
-            const touch t = meet_segment(b, m, muscle->first_fiber + f, r, node);
+    for (uint32_t m = 0; m < model->muscle_count; ++m) {
+        const ris_muscle *muscle = &model->muscle[m];
+        const bool listed = !muscle->def->attach_auto, allowed = may_bind(b, m, node);
+        const uint32_t segments = muscle->point_count - 1;
+        for (uint32_t k = 0; allowed && k < muscle->fiber_count * segments; ++k) {
+            const touch t = meet_segment(b, m, muscle->first_fiber + k / segments, k % segments, node);
             const float facing = listed ? f_max(t.facing, SMALLEST_FACING) : t.facing;
-            if (facing > 0.0f && (listed || t.distance <= radius) && t.distance / facing < best) {
+            if (facing > 0.0f && (listed || t.distance <= radius) && t.distance / facing < best &&
+                (!twin || mirrors(t.at, twin->at))) {
                 best = t.distance / facing;
                 *out = t;
+                *out_muscle = m;
             }
         }
     }
     return best;
 }
 
-/* kaehler tissue: the attachment of smallest distance / (n_s . n_d) over all muscles. A node of the midline that two twins
- * reach equally hangs on both, or the face would not be its own mirror image. */
+/* kaehler tissue: the attachment of smallest distance / (n_s . n_d) over all muscles. A node of the midline that hangs on one side
+ * hangs on the other alike, or the face would not be its own mirror image. */
 static ris_result bind_nearest(binder *b, uint32_t node, ris_error *err)
 {
-    const ris_model *model = b->bake->model;
-    float best = INFINITY, second = INFINITY;
-    uint32_t best_muscle = 0;
+    uint32_t muscle = 0, other = 0;
     touch nearest[2] = {{0}};
-    for (uint32_t m = 0; m < model->muscle_count; ++m) {
-        touch t = {0};
-        const float d = may_bind(b, m, node) ? nearest_touch(b, m, node, &t) : INFINITY;
-        if (d < best) {
-            second = best;
-            nearest[1] = nearest[0];
-            best = d;
-            nearest[0] = t;
-            best_muscle = m;
-        } else if (d < second) {
-            second = d;
-            nearest[1] = t;
-        }
-    }
+    const float best = nearest_touch(b, node, NULL, &nearest[0], &muscle);
     if (!(best < INFINITY)) {
         return RIS_OK;
     }
-    const bool both = second - best < TWIN_MM && fabsf(model->rest_position[node].x) < TWIN_MM;
+    bool both = fabsf(b->bake->model->rest_position[node].x) < TWIN_MM && fabsf(nearest[0].at.x) > TWIN_MM;
+    both = both && nearest_touch(b, node, &nearest[0], &nearest[1], &other) - best < TWIN_MM;
     nearest[0].share = both ? 0.5f : 1.0f;
     nearest[1].share = 0.5f;
-    return add_binding(b, best_muscle, node, nearest, both ? 2 : 1, 1.0f, nearest[0].along, err);
+    return add_binding(b, muscle, node, nearest, both ? 2 : 1, 1.0f, nearest[0].along, err);
 }
 
 ris_vec3 ris__anchor_at_rest(const ris_model *model, uint32_t node)

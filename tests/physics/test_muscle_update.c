@@ -317,6 +317,55 @@ static void ramped_and_sudden_smiles_end_alike(void **state)
     free(sudden);
 }
 
+/* The literal tissue too mirrors a symmetric pose, midline and all. */
+static void the_literal_tissue_is_symmetric(void **state)
+{
+    (void)state;
+    ris_sim *other = NULL;
+    need(ris_sim_create_cpu(literal, &other, &err));
+    static const char *const both[] = {"zygomaticus_major.L", "zygomaticus_major.R", "procerus",
+                                       "orbicularis_oris_superior"};
+    float gap = 0.0f, lopsided = 0.0f;
+    for (int side = 0; side < 2; ++side) { /* symmetric, then the left side only */
+        rest_pose();
+        for (int k = 0; k < (side ? 1 : 4); ++k) {
+            pose[channel(both[k])] = 1.0f;
+        }
+        need(ris_sim_reset(other, &err));
+        for (int tick = 0; tick < 30; ++tick) {
+            need(ris_sim_tick(other, pose, &err));
+        }
+        need(ris_sim_read(other, RIS_STATE_POSITION, x, &err));
+        for (uint32_t i = 0; i < model->node_count; ++i) {
+            if (mirror[i] != UINT32_MAX) {
+                const ris_vec4 p = x[mirror[i]];
+                float *most = side ? &lopsided : &gap;
+                *most = f_max(*most, v3_distance(v4_xyz(x[i]), v3(-p.x, p.y, p.z)));
+            }
+        }
+    }
+    assert_true(gap < 0.01f);
+    assert_true(lopsided > 0.5f); /* control */
+    ris_sim_destroy(other);
+}
+
+/* KA-05: the jaw alone leaves the middle of the upper lip where it is and takes the lower lip along. */
+static void the_jaw_leaves_the_upper_lip(void **state)
+{
+    (void)state;
+    rest_pose();
+    pose[channel("jaw.open")] = 1.0f;
+    settle();
+    float upper = 0.0f;
+    const ris_region *region = ris_head_region(model->head, "lip_upper");
+    for (uint32_t k = 0; k < region->count; ++k) {
+        const uint32_t i = region->vertex[k];
+        upper = fabsf(model->rest_position[i].x) < 6.0f ? f_max(upper, v3_length(moved(i))) : upper;
+    }
+    print_message("the middle of the upper lip moves %.3f mm\n", (double)upper);
+    assert_true(upper < 0.1f && moved(apex("lip_lower")).y < -15.0f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -328,6 +377,8 @@ int main(void)
         cmocka_unit_test(a_bulging_cheek_stands_out),
         cmocka_unit_test(a_smile_lifts_the_lip_and_straightens_the_depressor),
         cmocka_unit_test(ramped_and_sudden_smiles_end_alike),
+        cmocka_unit_test(the_literal_tissue_is_symmetric),
+        cmocka_unit_test(the_jaw_leaves_the_upper_lip),
     };
     return cmocka_run_group_tests(tests, open_heads, close_heads);
 }

@@ -1,4 +1,5 @@
-/* Muscle grids: KA-39 refinement, KA-41 vote, KA-14 anchors on bone, KA-44 stored lists. */
+/* Muscle grids: KA-39 refinement, KA-23 and KA-24 what is built on them, KA-41 vote, KA-04 and KA-14 anchors on bone, KA-43 edits,
+ * KA-44 stored lists. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -397,6 +398,113 @@ static void stored_lists_survive_a_perturbed_mesh(void **state)
     reference.tissue.model = RIS_TISSUE_RISORIUS;
 }
 
+/* KA-23, KA-24: every segment of the head has a right-handed frame of unit axes that looks at the skin, and what is attached
+ * finds its way from the frame to the world and back. */
+static void frames_and_attachments(void **state)
+{
+    (void)state;
+    ris_model *model = bake_reference();
+    uint32_t checked = 0;
+    for (uint32_t s = 0; s < model->segment_count; ++s) {
+        const ris_segment *g = &model->segment[s];
+        assert_near(v3_length(g->along), 1.0, 1e-6);
+        assert_near(v3_length(g->up), 1.0, 1e-6);
+        assert_near(v3_length(g->wide), 1.0, 1e-6);
+        assert_near(v3_dot(g->along, g->up), 0.0, 1e-6);
+        assert_near(v3_dot(v3_cross(g->along, g->up), g->wide), 1.0, 2e-6);
+    }
+    for (uint32_t i = 0; i < model->node_count; ++i) {
+        for (uint32_t b = model->binding_start[i]; b < model->binding_start[i + 1]; ++b) {
+            for (uint32_t k = 0; k < model->binding[b].attach_count; ++k, ++checked) {
+                const ris_attach *a = &model->attach[model->binding[b].first_attach + k];
+                const ris_segment *g = &model->segment[a->segment];
+                const ris_vec3 d = v3_sub(a->rest, g->origin);
+                assert_near(v3_dot(d, g->along) - a->local.x * g->size.x, 0.0, 2e-5);
+                assert_near(v3_dot(d, g->up) - a->local.y * g->size.y, 0.0, 2e-5);
+                assert_near(v3_dot(d, g->wide) - a->local.z * g->size.z, 0.0, 2e-5);
+            }
+        }
+    }
+    assert_true(checked > 2000);
+    ris_model_destroy(model);
+}
+
+static uint32_t find_muscle(const char *name)
+{
+    for (uint32_t m = 0; m < reference.muscle_count; ++m) {
+        if (strcmp(reference.muscle[m].name, name) == 0) {
+            return m;
+        }
+    }
+    fail_msg("no muscle %s", name);
+    return 0;
+}
+
+/* up looks at the skin: the muscles on the flat of the face, where there is no lining below. */
+static void frames_look_at_the_skin(void **state)
+{
+    (void)state;
+    ris_model *model = bake_reference();
+    static const char *const names[] = {"frontalis_inner.L", "zygomaticus_major.R", "procerus", "risorius.L"};
+    for (size_t k = 0; k < sizeof names / sizeof *names; ++k) {
+        const ris_muscle *muscle = &model->muscle[find_muscle(names[k])];
+        for (uint32_t s = 0; s < muscle->fiber_count * (muscle->point_count - 1); ++s) {
+            const ris_segment *g = &model->segment[model->fiber[muscle->first_fiber].first_segment + s];
+            uint32_t nearest = 0;
+            for (uint32_t i = 0; i < model->node_count; ++i) {
+                const ris_vec3 x = v4_xyz(model->rest_position[i]);
+                if (v3_distance(x, v3_mad(g->origin, 4.0f, g->up)) <
+                    v3_distance(v4_xyz(model->rest_position[nearest]), v3_mad(g->origin, 4.0f, g->up))) {
+                    nearest = i;
+                }
+            }
+            assert_true(v3_dot(g->up, v4_xyz(model->rest_normal[nearest])) > 0.0f);
+        }
+    }
+    ris_model_destroy(model);
+}
+
+static void mirror_grid(ris_muscle_def *def)
+{
+    for (uint32_t r = 0; r < def->rows; ++r) {
+        ris_vec3 *row = def->grid + (size_t)r * def->columns;
+        for (uint32_t c = 0; c < (def->columns + 1) / 2; ++c) {
+            const ris_vec3 a = row[c], b = row[def->columns - 1 - c];
+            row[c] = v3(-b.x, b.y, b.z);
+            row[def->columns - 1 - c] = v3(-a.x, a.y, a.z);
+        }
+    }
+}
+
+/* KA-43: a muscle mirrored twice, and one taken out and put back, bind what they bound; mirrored once it does not. */
+static void edits_can_be_undone(void **state)
+{
+    (void)state;
+    ris_model *first = bake_reference();
+    const uint32_t m = find_muscle("frontalis_outer.L");
+    mirror_grid(&reference.muscle[m]);
+    ris_model *once = bake_reference();
+    assert_true(count_changes(first, once) > 10); /* control */
+    mirror_grid(&reference.muscle[m]);
+    ris_model *twice = bake_reference();
+    assert_int_equal(count_changes(first, twice), 0);
+    assert_memory_equal(first->fiber_point, twice->fiber_point,
+                        first->fiber_point_count * sizeof *first->fiber_point);
+    const uint32_t last = reference.muscle_count - 1;
+    reference.muscle_count = last; /* the last one is deleted */
+    ris_model *without = bake_reference();
+    reference.muscle_count = last + 1;
+    ris_model *again = bake_reference();
+    assert_int_equal(without->muscle_count, last);
+    assert_int_equal(count_changes(first, again), 0);
+    assert_memory_equal(first->binding_start, again->binding_start,
+                        (first->node_count + 1) * sizeof *first->binding_start);
+    ris_model *const all[] = {first, once, twice, without, again};
+    for (size_t k = 0; k < sizeof all / sizeof *all; ++k) {
+        ris_model_destroy(all[k]);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -407,6 +515,9 @@ int main(void)
         cmocka_unit_test(bone_anchors_lie_on_bone_inside_the_skin),
         cmocka_unit_test(muscles_vote_for_their_bone),
         cmocka_unit_test(stored_lists_survive_a_perturbed_mesh),
+        cmocka_unit_test(frames_and_attachments),
+        cmocka_unit_test(frames_look_at_the_skin),
+        cmocka_unit_test(edits_can_be_undone),
     };
     return cmocka_run_group_tests(tests, load_reference, drop_reference);
 }

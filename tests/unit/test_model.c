@@ -258,6 +258,22 @@ static void grids_sink_below_flat_skin(void **state)
     assert_true(model->muscle[0].on_jaw);
     ris_model_destroy(model);
 
+    ris_muscle_def *def = &head.muscle[0];
+    ris_vec3 *small = def->grid, wide[55]; /* KA-40: 11 x 5 points give 4 fibres of 11 points */
+    for (uint32_t k = 0; k < 55; ++k) {
+        wide[k] = v3((float)(k % 5) * 5.0f - 10.0f, (float)(k / 5) * 5.0f - 25.0f, 0.0f);
+    }
+    def->grid = wide;
+    def->rows = 11;
+    def->columns = 5;
+    model = bake(&head);
+    assert_int_equal(model->fiber_count, 4);
+    assert_int_equal(model->muscle[0].point_count, 11);
+    ris_model_destroy(model);
+    def->grid = small;
+    def->rows = 7;
+    def->columns = 3;
+
     head.muscle[0].grid[20].z = 90.0f;
     expect_refusal(&head, "row 6, column 2");
     head.muscle[0].rows = 1;

@@ -73,6 +73,9 @@ static void linear_contraction(void **state) /* KA-31 */
         const float length = polyline(q, 4);
         assert_true(length <= before + 1e-6f && length > 0.0f);
         assert_point(q[0], 0, 0, 0, 0);
+        for (int i = 0; i < 4; ++i) { /* every point on the old polygon */
+            assert_true(q[i].y == 0.0f ? q[i].x <= 1.0f : fabsf(q[i].x - 1.0f) < 1e-6f && q[i].y <= 2.0f);
+        }
         before = length;
     }
 }
