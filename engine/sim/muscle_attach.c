@@ -86,6 +86,16 @@ static ris_vec3 muscle_move(const ris_rig *rig, uint32_t i)
     return v3_scale(sum, 1.0f / f_max(total, 1.0f));
 }
 
+/* KA-47: fat that a muscle gathers rises. */
+static void raise_fat(ris_rig *rig)
+{
+    const ris_model *model = rig->model;
+    for (uint32_t k = 0; k < model->fat_count; ++k) {
+        const ris_fat_node *fat = &model->fat[k];
+        rig->move[fat->node] = v3_mad(rig->move[fat->node], rig->squeeze[fat->muscle], fat->rise_mm);
+    }
+}
+
 /* The lining of the mouth goes with the lips before it. */
 static void follow_lips(ris_rig *rig)
 {
@@ -150,6 +160,7 @@ void ris__muscle_attach(ris_rig *rig)
             rig->move[i] = muscle_move(rig, i);
         }
     }
+    raise_fat(rig);
     follow_lips(rig);
     for (uint32_t i = 0; i < model->node_count; ++i) {
         if (!(model->rest_position[i].w > 0.0f)) {

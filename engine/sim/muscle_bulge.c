@@ -69,14 +69,17 @@ void ris__muscle_bulge(ris_rig *rig)
             bulge_between_bones(rig, m);
             continue;
         }
+        float squeeze = 0.0f;
         for (uint32_t f = 0; f < muscle->fiber_count; ++f) {
             const ris_fiber *fiber = &model->fiber[muscle->first_fiber + f];
             const float rho = length_of(rig->q + fiber->first_point, muscle->point_count) /
                               length_of(rig->p + fiber->first_point, muscle->point_count);
+            squeeze += f_max(1.0f - rho, 0.0f) / f_max(rho, SMALLEST);
             for (uint32_t s = 0; s + 1 < muscle->point_count; ++s) {
                 rig->bulge[fiber->first_segment + s] =
                     ris__bulge_factor(muscle->kind, nu, rho, s, muscle->point_count - 1);
             }
         }
+        rig->squeeze[m] = squeeze / (float)muscle->fiber_count;
     }
 }

@@ -26,6 +26,7 @@ ris_result ris__rig_init(ris_rig *rig, const ris_model *model, ris_error *err)
         {&rig->activation, model->muscle_count, sizeof *rig->activation},
         {&rig->activity, model->muscle_count, sizeof *rig->activity},
         {&rig->drag, 2 * (size_t)model->muscle_count, sizeof *rig->drag},
+        {&rig->squeeze, model->muscle_count, sizeof *rig->squeeze},
         {&rig->bulge, model->segment_count, sizeof *rig->bulge},
         {&rig->muscle_jaw, model->fiber_point_count, sizeof *rig->muscle_jaw},
         {&rig->move, model->node_count, sizeof *rig->move},
@@ -70,6 +71,7 @@ void ris__rig_finish(ris_rig *rig)
     free(rig->activation);
     free(rig->activity);
     free(rig->drag);
+    free(rig->squeeze);
     free(rig->bulge);
     free(rig->muscle_jaw);
     free(rig->move);
@@ -92,6 +94,7 @@ void ris__rig_reset(ris_rig *rig)
     memset(rig->activation, 0, model->muscle_count * sizeof *rig->activation);
     memset(rig->activity, 0, model->muscle_count * sizeof *rig->activity);
     memset(rig->drag, 0, 2 * (size_t)model->muscle_count * sizeof *rig->drag);
+    memset(rig->squeeze, 0, model->muscle_count * sizeof *rig->squeeze);
     memset(rig->move, 0, model->node_count * sizeof *rig->move);
     memset(rig->delta, 0, model->node_count * sizeof *rig->delta);
     memset(rig->lid_move, 0, model->lid_count * sizeof *rig->lid_move);

@@ -58,6 +58,8 @@ typedef struct ris_rig {
         *network_v;      /* kaehler: positions, and 3 x velocities and forces (network_node_count) */
     float *network_rest; /* mm (network_spring_count) */
     /* muscle_bulge */
+    float
+        *squeeze; /* KA-47: shortening over remaining length, 0 or more, mean of the fibres (muscle_count) */
     float *bulge; /* height scale per segment (segment_count) */
     /* muscle_shape */
     float *muscle_jaw; /* how far each control point turns with the jaw, 0..1 (fiber_point_count); constant */

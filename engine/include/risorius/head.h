@@ -60,6 +60,8 @@ typedef struct ris_muscle_def {
     float insertion_start; /* t0 of the insertion profile along the fibre, 0..1 */
     float lip_drag_power; /* > 0: the end pulls the lip corner, drag along the oris is t^power; 0 = no pull */
     float gain;           /* factor on the weight (docs/physics.md) */
+    float fat,
+        fat_radius_mm; /* KA-47: how much of the fat over it rises when it shortens, and how far beside it */
     bool attach_auto;
     uint32_t attach_count;
     uint32_t *attach; /* skin vertices when attach_auto is false (attach_count) */

@@ -99,6 +99,13 @@ typedef struct ris_lid_node {
     float gap_mm;              /* from the surface of the eye at rest; negative in the lining */
 } ris_lid_node;
 
+/* KA-47. A node of a fat pad rises by rise_mm times the squeeze of the muscle below it: shortening over what is
+ * left of its length. */
+typedef struct ris_fat_node {
+    uint32_t node, muscle;
+    ris_vec3 rise_mm;
+} ris_fat_node;
+
 #define RIS_LINING_SOURCES 4
 /* A node of the mouth's lining moves by keep times the sum of its sources' displacements. Sources are nodes
  * of the lips or nodes of the lining that stand before it. */
@@ -150,6 +157,8 @@ typedef struct ris_model {
     uint32_t lid_count; /* 0 without eyes, lids or in the kaehler tissue */
     ris_lid_node *lid;  /* ascending node (lid_count) */
     ris_lid_eye lid_eye[2];
+    uint32_t fat_count; /* 0 in the kaehler tissue */
+    ris_fat_node *fat;
     uint32_t lining_count; /* 0 without lips, mouth_cavity or in the kaehler tissue */
     ris_lining_node *lining;
     ris_vec3 *bone_anchor;   /* KA-14: point on the bone below the node at rest, mm (node_count) */
