@@ -9,11 +9,13 @@
 #define PAD_FROM 0.15f /* of the muscle's length: where the pad begins, */
 #define PAD_TO 0.9f    /* and where it ends, before the insertion */
 #define FAT_MAX_MM 10.0f
-#define LIFT 0.7f /* of a rise goes along the muscle, towards its fixed end */
+#define FACING_NONE 0.2f /* the side of the nose looks away from the cheek */
+#define LIFT 0.7f        /* of a rise goes along the muscle, towards its fixed end */
 
 /* A node over a muscle. */
 typedef struct pad_place {
     float along, beside_mm, fat_mm; /* share of the length; tangential distance; between muscle and skin */
+    float facing;                   /* n of the skin . away from the muscle */
     ris_vec3 pull;                  /* unit, towards the fixed end */
 } pad_place;
 
@@ -52,6 +54,7 @@ static bool find_place(const ris_bake *bake, const ris_muscle *muscle, uint32_t 
         const float out_mm = v3_dot(r, n), beside = v3_length(v3_mad(r, -out_mm, n));
         if (out_mm > 0.0f && v3_length(r) < best) {
             best = v3_length(r);
+            out->facing = out_mm / v3_length(r);
             out->along = (own + s * step) / length;
             out->beside_mm = beside;
             out->fat_mm = f_clamp(out_mm - half - bake->head->tissue.skin_mm, 0.0f, FAT_MAX_MM);
@@ -82,7 +85,8 @@ static void find_pad(ris_bake *bake, uint32_t m, const bool *apart)
             continue;
         }
         const float ratio = place.beside_mm / reach, bell = 1.0f - ratio * ratio;
-        const float rise = muscle->def->fat * place.fat_mm * bell * bell * pad_window(place.along);
+        const float facing = f_smoothstep((place.facing - FACING_NONE) / (1.0f - FACING_NONE));
+        const float rise = muscle->def->fat * place.fat_mm * bell * bell * pad_window(place.along) * facing;
         if (rise > 1e-3f) {
             const ris_vec3 n = v4_xyz(model->rest_normal[i]);
             const ris_vec3 along_skin = v3_mad(place.pull, -v3_dot(place.pull, n), n);
@@ -96,7 +100,7 @@ static void find_pad(ris_bake *bake, uint32_t m, const bool *apart)
 
 ris_result ris__bake_fat(ris_bake *bake, ris_error *err)
 {
-    static const char *const regions[] = {"lips", "mouth_cavity", "lids", "eye_socket"};
+    static const char *const regions[] = {"lips", "mouth_cavity", "lids", "eye_socket", "nose"};
     ris_model *model = bake->model;
     size_t pads = 0;
     bool *apart = NULL;
