@@ -89,6 +89,9 @@ void ris__draw_view_fill(const ris_draw *draw, const ris_camera *camera, const f
 void ris__draw_object(const ris_draw *draw, VkCommandBuffer cmd, const ris_sim *sim,
                       const ris_draw_item *item, VkDescriptorSet set);
 VkDescriptorSet ris__draw_set_of(const ris_draw *draw, const ris_draw_item *item);
+/* soft.c: writes the parts that change their shape into the surface; area-weighted normals of a mesh at position */
+ris_result ris__draw_soft_record(ris_draw *draw, VkCommandBuffer cmd, const ris_sim *sim, ris_error *err);
+void ris__soft_normals(const ris_mesh *mesh, const ris_vec4 *position, ris_vec4 *normal);
 /* layers.c: makes them on first use; writes what changes every frame. node (node_count) NULL = read from sim. */
 ris_result ris__draw_layers_create(ris_draw *draw, ris_error *err);
 void ris__draw_layers_finish(ris_draw *draw);

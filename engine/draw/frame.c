@@ -249,7 +249,12 @@ static ris_result draw_nodes(ris_draw *draw, ris_sim *sim, VkBuffer buffer, VkDe
     VkCommandBuffer cmd = draw->cmd.handle;
     ris_vk_barrier(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                    VK_ACCESS_2_MEMORY_WRITE_BIT | VK_ACCESS_2_MEMORY_READ_BIT,
-                   VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+                   VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                   VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT |
+                       VK_ACCESS_2_TRANSFER_WRITE_BIT);
+    RIS_TRY(ris__draw_soft_record(draw, cmd, sim, err));
+    ris_vk_barrier(cmd, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                   VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT,
                    VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT);
     record_surface(draw, cmd);
     record_shadow(draw, cmd, sim);

@@ -265,6 +265,8 @@ static void append(ris_draw_scene *out, const ris_head *head, const piece *from)
                             .bone = part ? part->bone : RIS_BONE_SKIN,
                             .first_index = out->index_count,
                             .index_count = in->index_count,
+                            .part = part ? (uint32_t)(part - head->part) : UINT32_MAX,
+                            .first_vertex = first_vertex,
                             .tint = part ? part->tint : (ris_vec3){0.52f, 0.28f, 0.19f},
                             .pivot = part ? part->pivot : (ris_vec3){0.0f, 0.0f, 0.0f}};
     item->texture = texture_index(out, part ? part->color : head->color);

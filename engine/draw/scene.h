@@ -10,7 +10,8 @@ typedef struct ris_draw_item {
     ris_material material;
     ris_bone bone; /* SKIN: already placed by ride.comp (and the skin itself) */
     uint32_t first_index, index_count;
-    uint32_t texture; /* into ris_draw_scene.texture, UINT32_MAX = none */
+    uint32_t part, first_vertex; /* of the head, UINT32_MAX = the skin; its first surface vertex */
+    uint32_t texture;            /* into ris_draw_scene.texture, UINT32_MAX = none */
     ris_vec3 tint, pivot;
 } ris_draw_item;
 

@@ -314,8 +314,9 @@ ris_result ris_sim_part(const ris_sim *sim, uint32_t part, const ris_vec4 *posit
     }
     float m[12];
     ris_sim_bone_transform(sim, def->bone, m);
+    const bool shaped = ris_sim_part_shape(sim, part, out);
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
-        ris_vec3 p = mesh->position[v];
+        ris_vec3 p = shaped ? xyz(out[v]) : mesh->position[v];
         out[v] = (ris_vec4){m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3],
                             m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
                             m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11], 1.0f};

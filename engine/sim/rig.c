@@ -12,6 +12,7 @@ ris_result ris__rig_init(ris_rig *rig, const ris_model *model, ris_error *err)
     memset(rig, 0, sizeof *rig);
     rig->model = model;
     rig->first_beside = model->muscle_count;
+    ris__tongue_init(&rig->tongue, model->head);
     const struct {
         void *field;
         size_t count, size;
@@ -88,6 +89,7 @@ void ris__rig_reset(ris_rig *rig)
     const bool kaehler = (model->push.flags & RIS_TISSUE_FLAG_KAEHLER) != 0;
     rig->jaw = ris__rigid_turn(v3(0, 0, 0), v3(1, 0, 0), 0.0);
     rig->eye[0] = rig->eye[1] = rig->head = rig->jaw;
+    rig->tongue.still = true;
     memcpy(rig->p, model->fiber_point, model->fiber_point_count * sizeof *rig->p);
     memcpy(rig->q, model->fiber_point, model->fiber_point_count * sizeof *rig->q);
     memset(rig->contraction, 0, model->muscle_count * sizeof *rig->contraction);

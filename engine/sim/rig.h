@@ -23,7 +23,10 @@ enum {
     RIS__LID_UPPER_L,
     RIS__LID_UPPER_R,
     RIS__LID_LOWER_L,
-    RIS__LID_LOWER_R
+    RIS__LID_LOWER_R,
+    RIS__TONGUE_OUT,
+    RIS__TONGUE_TIP,
+    RIS__TONGUE_WIDE
 };
 
 /* x -> rotation (x - point) + point + shift; identity leaves bits alone. */
@@ -39,6 +42,26 @@ typedef struct ris_drag {
     float power;           /* activation-weighted mean of the pulling muscles' lip_drag_power */
     float strength;        /* 0..1, activity of the pull */
 } ris_drag;
+
+#define RIS__TONGUE_STATIONS 33
+#define RIS__TONGUE_STEPS 64
+
+/* One section of the tongue: place of its middle, turn from rest, scales. */
+typedef struct ris_tongue_frame {
+    float y, z;         /* mm, in the frame of the jaw */
+    float cosine, sine; /* of the turn, the tip upwards */
+    float height, width;
+} ris_tongue_frame;
+
+/* The head's tongue: sections at rest from back to tip, and as the pose bends them. */
+typedef struct ris_tongue {
+    const ris_mesh *mesh; /* NULL: the head has none */
+    float back_z, length; /* mm */
+    float middle[RIS__TONGUE_STATIONS], half_height[RIS__TONGUE_STATIONS],
+        half_width[RIS__TONGUE_STATIONS]; /* mm */
+    bool still;                           /* at rest in the jaw */
+    ris_tongue_frame frame[RIS__TONGUE_STEPS + 1];
+} ris_tongue;
 
 typedef struct ris_rig {
     const ris_model *model;
@@ -68,6 +91,8 @@ typedef struct ris_rig {
     ris_vec3 *target;        /* of the previous tick (node_count) */
     ris_anchor_point *point; /* (node_count) */
     ris_vec4 *delta;         /* (node_count) */
+    /* tongue_pose */
+    ris_tongue tongue;
     /* lid_pose */
     ris_vec3 *lid_move; /* what muscles and jaw move the nodes of the lids by, mm (lid_count) */
 } ris_rig;
@@ -85,6 +110,12 @@ void ris__muscle_relax(ris_rig *rig);
 void ris__muscle_bulge(ris_rig *rig);
 void ris__muscle_attach(ris_rig *rig);
 void ris__lid_pose(ris_rig *rig, const float *pose);
+void ris__tongue_pose(ris_rig *rig, const float *pose);
+
+/* Finds the tongue among the parts. */
+void ris__tongue_init(ris_tongue *tongue, const ris_head *head);
+/* Where a point of the tongue at rest is now, in the frame of the jaw. */
+ris_vec3 ris__tongue_place(const ris_tongue *tongue, ris_vec3 p);
 
 /* How far each control point turns with the jaw when shown (fiber_point_count). */
 ris_result ris__muscle_jaw_weights(const ris_model *model, float *weight, ris_error *err);

@@ -113,6 +113,7 @@ static void run_muscle_stages(ris_sim *sim, const float *pose)
     ris__muscle_bulge(&sim->rig);
     ris__muscle_attach(&sim->rig);
     ris__lid_pose(&sim->rig, pose);
+    ris__tongue_pose(&sim->rig, pose);
 }
 
 ris_result ris__sim_pose(ris_sim *sim, const float *pose, ris_anchor_frame *out, ris_error *err)
@@ -296,6 +297,18 @@ void ris_sim_bone_transform(const ris_sim *sim, ris_bone bone, float out[12])
     case RIS_BONE_SKIN: break;
     }
     ris__rigid_matrix(&skull, out);
+}
+
+bool ris_sim_part_shape(const ris_sim *sim, uint32_t part, ris_vec4 *out)
+{
+    const ris_mesh *mesh = &sim->model->head->part[part].mesh;
+    if (mesh != sim->rig.tongue.mesh) {
+        return false;
+    }
+    for (uint32_t v = 0; v < mesh->vertex_count; ++v) {
+        out[v] = v4_from(ris__tongue_place(&sim->rig.tongue, mesh->position[v]), 1.0f);
+    }
+    return true;
 }
 
 void ris_sim_head_transform(const ris_sim *sim, float out[12])

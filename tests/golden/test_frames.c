@@ -81,6 +81,7 @@ static void golden_frames(void **state)
         {"head-front", "", "front", false, false, 0},
         {"head-34", "", "34", false, false, 0},
         {"head-jaw-open", "jaw.open=1", "front", false, false, RIS_LAYER_SKIN},
+        {"head-tongue", "jaw.open=0.6,tongue.out=1,tongue.tip=-0.5", "34", false, false, RIS_LAYER_SKIN},
         {"scene-muscles", "zygomaticus_major=1,jaw.open=0.5", "front", true, false, RIS_LAYER_MUSCLES},
         {"head-glass", "jaw.open=1", "34", false, false,
          RIS_LAYER_SKIN | RIS_LAYER_SKULL | RIS_LAYER_LANDMARKS},

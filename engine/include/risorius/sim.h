@@ -1,5 +1,5 @@
 /* The simulation: a pose in, skin positions and normals out, on the CPU or on a Vulkan device. One thread
- * per sim. One tick = 1/60 s: jaw_pose .. lid_pose on the host, anchor_shift, substeps of [bend,
+ * per sim. One tick = 1/60 s: jaw_pose .. tongue_pose on the host, anchor_shift, substeps of [bend,
  * spring_force, verlet], normal on the backend. */
 #pragma once
 
@@ -40,7 +40,7 @@ const char *ris_state_name(ris_state state);
 /* Backend times of the last tick, ms; host and wait filled by every backend, stages where it can measure
  * them. */
 typedef struct ris_sim_times {
-    double muscle_ms;                 /* jaw_pose .. lid_pose on the host */
+    double muscle_ms;                 /* jaw_pose .. tongue_pose on the host */
     double upload_ms;                 /* anchor upload */
     double stage_ms[RIS_STAGE_COUNT]; /* sum over substeps */
     double wait_ms;                   /* record, submit and fence wait (0 on the CPU) */
@@ -98,6 +98,10 @@ float ris_sim_activation(const ris_sim *sim, uint32_t muscle);
 /* Where a landmark of the head is, in skull space: on the skin at position (node_count, as read from sim), or with
  * its bone. out_tip (may be NULL) is the end of its dowel, the same point on the skin. */
 ris_vec3 ris_sim_landmark(const ris_sim *sim, uint32_t landmark, const ris_vec4 *position, ris_vec3 *out_tip);
+
+/* Vertices of a part that changes its shape (the tongue) in the frame of its bone (vertex_count of its mesh, w 1); false
+ * and nothing for rigid and riding parts. */
+bool ris_sim_part_shape(const ris_sim *sim, uint32_t part, ris_vec4 *out);
 
 /* Vertices of part `part` of the head (vertex_count of its mesh, w 1): by its bone, or riding on the skin
  * at position (node_count, as read from sim). Without the head pose, as the skin. RIS_ERROR_USAGE: no such
