@@ -10,7 +10,8 @@
 #define STATIONS RIS__TONGUE_STATIONS
 #define STEPS RIS__TONGUE_STEPS
 #define SMOOTHING 6
-#define ROOT_MM 8.0f    /* the whole tongue comes forward */
+#define ROOT_MM 8.0f    /* the whole tongue comes forward, */
+#define PRESS_MM 2.0f   /* in a closed mouth this far, to the lower incisors, */
 #define REACH_MM 37.0f  /* and gets longer */
 #define RISE_FROM 0.42f /* of the length: from here on the line rises to pass the lower incisors */
 #define CLEAR_MM 1.5f   /* between tongue and lower incisors */
@@ -108,6 +109,7 @@ void ris__tongue_init(ris_tongue *tongue, const ris_head *head)
 /* What a pose asks for, limited by the room between the teeth. */
 typedef struct aim {
     float out, up, wide; /* out 0..1; up and wide -1..1 */
+    float root_mm;       /* forward */
     float shown;         /* how far the way over the teeth is taken, 0..1 */
     float teeth_z, pass_y,
         pass_mm; /* where the lower incisors are, middle and thickness of the tongue above them */
@@ -120,6 +122,7 @@ static aim aim_of(const ris_rig *rig, const float *beside)
     const float room = f_max(incisor.y - ris__rigid_apply(&rig->jaw, incisor).y - 2.0f, 0.0f);
     aim a = {.teeth_z = incisor.z};
     a.out = f_clamp(beside[RIS__TONGUE_OUT], 0.0f, 1.0f) * f_smoothstep((room - 3.0f) / 8.0f);
+    a.root_mm = PRESS_MM * f_clamp(beside[RIS__TONGUE_OUT], 0.0f, 1.0f) + (ROOT_MM - PRESS_MM) * a.out;
     a.shown = f_smoothstep(a.out / 0.18f);
     const float tip = f_clamp(beside[RIS__TONGUE_TIP], -1.0f, 1.0f);
     const float up = f_min(0.23f + room / 18.0f, 1.0f), past = f_clamp((room - 5.0f) / 9.0f, 0.15f, 1.0f),
@@ -173,7 +176,7 @@ static float slope_at(const aim *a, float z, float from_z, float from_y)
 
 static void bend_line(ris_tongue *tongue, const aim *a)
 {
-    float y = tongue->middle[0], z = tongue->back_z + ROOT_MM * a->out, from_y = y, from_z = z;
+    float y = tongue->middle[0], z = tongue->back_z + a->root_mm, from_y = y, from_z = z;
     const float du = 1.0f / (float)STEPS, reach = a->out * REACH_MM / tongue->length;
     float bend_from = BEND_FROM;
     for (uint32_t k = 0; k <= STEPS; ++k) {

@@ -181,6 +181,23 @@ static void poses_combine(void **state)
 }
 
 /* No channel is dead: each moves its skin or its bone. */
+/* How far the tongue, which the skin does not show, is from rest. */
+static float tongue_moved(void)
+{
+    float most = 0.0f;
+    for (uint32_t k = 0; k < model->head->part_count; ++k) {
+        const ris_mesh *mesh = &model->head->part[k].mesh;
+        ris_vec4 *at = calloc(mesh->vertex_count + 1u, sizeof *at);
+        assert_non_null(at);
+        const bool shaped = ris_sim_part_shape(sim, k, at);
+        for (uint32_t v = 0; shaped && v < mesh->vertex_count; ++v) {
+            most = f_max(most, v3_distance(v4_xyz(at[v]), mesh->position[v]));
+        }
+        free(at);
+    }
+    return most;
+}
+
 static void no_channel_is_dead(void **state)
 {
     (void)state;
@@ -200,7 +217,7 @@ static void no_channel_is_dead(void **state)
             ris_sim_head_transform(sim, step ? after[4] : before[4]);
         }
         need(ris_sim_read(sim, RIS_STATE_POSITION, x, &err));
-        float most = 0.0f;
+        float most = tongue_moved();
         for (uint32_t i = 0; i < model->node_count; ++i) {
             most = f_max(most, v3_length(moved(i)));
         }
