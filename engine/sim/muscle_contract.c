@@ -156,9 +156,9 @@ void ris__muscle_contract(ris_rig *rig, const float *pose)
         const float c = f_min(activation * muscle->max_shortening, LARGEST_CONTRACTION);
         const bool sphincter = muscle->kind == RIS_MUSCLE_SPHINCTER;
         const ring_pose ring = sphincter ? pose_ring(rig, m, c, pose) : (ring_pose){.literal = true};
-        rig->activation[m] = activation;
-        rig->activity[m] =
-            f_min(f_max(activation, ring.literal ? 0.0f : ring.protrude) / ACTIVITY_FULL, 1.0f);
+        /* a lip that protrudes takes its corner along as one that contracts does */
+        rig->activation[m] = ring.literal ? activation : f_max(activation, ring.protrude);
+        rig->activity[m] = f_min(rig->activation[m] / ACTIVITY_FULL, 1.0f);
         rig->contraction[m] = c;
         for (uint32_t f = 0; f < muscle->fiber_count; ++f) {
             const uint32_t first = model->fiber[muscle->first_fiber + f].first_point;
