@@ -34,10 +34,16 @@ typedef struct touch {
     float share;
 } touch;
 
+/* Box around the flat sheets of a muscle, as far as it reaches. */
+typedef struct reach_box {
+    ris_vec3 low, high;
+} reach_box;
+
 typedef struct binder {
     ris_bake *bake;
-    const float *arc; /* arc-length parameter of each fibre point */
-    uint8_t *lip;     /* per node: LIP_UPPER, LIP_LOWER bits */
+    const reach_box *box; /* (muscle_count) */
+    const float *arc;     /* arc-length parameter of each fibre point */
+    uint8_t *lip;         /* per node: LIP_UPPER, LIP_LOWER bits */
     uint8_t *muscle_lip;
     bool *lining;         /* per node: the mouth's lining, which follows the lips */
     uint8_t *muscle_node; /* explicit attach lists (muscle_count x node_count), NULL if none */
@@ -73,8 +79,19 @@ static touch meet_segment(const binder *b, uint32_t m, uint32_t fiber, uint32_t 
     return t;
 }
 
+static bool within_reach(const binder *b, uint32_t m, uint32_t node)
+{
+    const reach_box *box = &b->box[m];
+    const ris_vec4 x = b->bake->model->rest_position[node];
+    return x.x >= box->low.x && x.y >= box->low.y && x.z >= box->low.z && x.x <= box->high.x &&
+           x.y <= box->high.y && x.z <= box->high.z;
+}
+
 static bool may_bind(const binder *b, uint32_t m, uint32_t node)
 {
+    if (!within_reach(b, m, node) && b->bake->model->muscle[m].def->attach_auto) {
+        return false; /* nearly always */
+    }
     const uint8_t lip = b->muscle_lip[m];
     if (b->lining[node] || b->bake->model->muscle[m].def->acts_on == RIS_ACTS_ON_LID) {
         return false;
@@ -389,16 +406,52 @@ static float *measure_arcs(const ris_model *model, ris_error *err)
     return arc;
 }
 
+static void measure_reach(const ris_bake *bake, reach_box *box)
+{
+    const ris_model *model = bake->model;
+    const ris_tissue_def *tissue = &bake->head->tissue;
+    for (uint32_t m = 0; m < model->muscle_count; ++m) {
+        const ris_muscle *muscle = &model->muscle[m];
+        const ris_bake_grid *grid = &bake->grid[m];
+        float reach = 0.0f;
+        for (uint32_t k = 0; k < grid->rows * grid->columns; ++k) {
+            reach = f_max(reach, grid->depth[k]);
+        }
+        reach = f_max(reach + muscle->radius_mm, tissue->muscle_radius_mm) + 0.1f;
+        box[m] = (reach_box){v3(INFINITY, INFINITY, INFINITY), v3(-INFINITY, -INFINITY, -INFINITY)};
+        for (uint32_t k = 0; k < muscle->fiber_count * (muscle->point_count - 1); ++k) {
+            const ris_segment *s = &model->segment[model->fiber[muscle->first_fiber].first_segment + k];
+            for (uint32_t c = 0; c < 4; ++c) {
+                const ris_vec3 edge =
+                    v3_mad(s->origin, c & 1 ? 0.5f * s->size.x : -0.5f * s->size.x, s->along);
+                const ris_vec3 p = v3_mad(edge, c & 2 ? 0.5f * s->size.z : -0.5f * s->size.z, s->wide);
+                box[m].low = v3(f_min(box[m].low.x, p.x - reach), f_min(box[m].low.y, p.y - reach),
+                                f_min(box[m].low.z, p.z - reach));
+                box[m].high = v3(f_max(box[m].high.x, p.x + reach), f_max(box[m].high.y, p.y + reach),
+                                 f_max(box[m].high.z, p.z + reach));
+            }
+        }
+    }
+}
+
 ris_result ris__bake_bindings(ris_bake *bake, ris_error *err)
 {
     ris_model *model = bake->model;
     const bool literal = bake->head->tissue.model == RIS_TISSUE_KAEHLER;
     binder b = {.bake = bake};
+    reach_box *box = NULL;
     ris_result result = ris__model_alloc(&model->binding_start, (size_t)model->node_count + 1,
                                          sizeof *model->binding_start, "bindings", err);
     if (result == RIS_OK) {
         result = ris__model_alloc(&bake->muscle_weight, model->node_count, sizeof *bake->muscle_weight,
                                   "bindings", err);
+    }
+    if (result == RIS_OK) {
+        result = ris__model_alloc(&box, model->muscle_count, sizeof *box, "bindings", err);
+    }
+    if (result == RIS_OK) {
+        measure_reach(bake, box);
+        b.box = box;
     }
     float *arc = result == RIS_OK ? measure_arcs(model, err) : NULL;
     result = result == RIS_OK && !arc ? RIS_ERROR_MEMORY : result;
@@ -425,6 +478,7 @@ ris_result ris__bake_bindings(ris_bake *bake, ris_error *err)
         }
     }
     free(arc);
+    free(box);
     free(b.lip);
     free(b.muscle_lip);
     free(b.lining);

@@ -71,7 +71,8 @@ static void sample(const ris_bake *bake, const patch *p, const ris_vec3 axis[2],
     out->farthest = -INFINITY;
     out->extent[0] = out->extent[1] = 0.0f;
     for (uint32_t k = 0; k < n[0] * n[1]; ++k) {
-        const float u = (float)(k / n[1]) / (float)(n[0] - 1), v = (float)(k % n[1]) / (float)(n[1] - 1);
+        const uint32_t row = k / n[1], column = k % n[1];
+        const float u = (float)row / (float)(n[0] - 1), v = (float)column / (float)(n[1] - 1);
         uint32_t triangle = 0;
         const float d = ris__depth_along(bake, blend(p->point, u, v),
                                          v3_unit_or(blend(p->normal, u, v), p->normal[0]), &triangle);

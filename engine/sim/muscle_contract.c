@@ -75,12 +75,12 @@ ris_vec3 ris__contract_lip(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, ris_vec3 side, 
     return v3_mad(q, forward * c * (RIS__LIP_OUTER + (1.0f - RIS__LIP_OUTER) * inner) * (goal - out), axis);
 }
 
-ris_vec3 ris__protrude(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, uint32_t j, uint32_t f)
+ris_vec3 ris__protrude(ris_vec3 a0, ris_vec3 a1, uint32_t j, uint32_t f, float along)
 {
-    const ris_vec3 axis = v3_unit_or(v3_sub(a1, a0), v3(0, 0, 1));
-    const float inner = f > 1 ? (float)j / (float)(f - 1) : 1.0f;
-    const float left = f_max(v3_distance(a0, a1) - v3_dot(axis, v3_sub(p, a0)), 0.0f);
-    return v3_scale(axis, RIS__PROTRUDE * left * (RIS__LIP_OUTER + (1.0f - RIS__LIP_OUTER) * inner));
+    const float inner = f > 1 ? (float)j / (float)(f - 1) : 1.0f, from_middle = 2.0f * along - 1.0f;
+    const float share =
+        (RIS__LIP_OUTER + (1.0f - RIS__LIP_OUTER) * inner) * (1.0f - from_middle * from_middle);
+    return v3_scale(v3_sub(a1, a0), RIS__PROTRUDE * share);
 }
 
 /* Unit vector from one end of a sphincter to the other, across its axis; zero for a closed ring. */
@@ -134,7 +134,7 @@ static ris_vec3 contract_ring(const ris_muscle *muscle, const ring_pose *ring, r
     ris_vec3 q = p;
     if (ring->c > 0.0f && ring->lip) {
         q = ris__contract_lip(p, axis[0], axis[1], ring->side, f, muscle->fiber_count, ring->c,
-                              ring->tie[0] + along * (ring->tie[1] - ring->tie[0]));
+                              ring->tie[0] + f_smoothstep(along) * (ring->tie[1] - ring->tie[0]));
     } else if (ring->c > 0.0f && muscle->def->closes_on_line) {
         q = ris__contract_slit(p, axis[0], axis[1], ring->c);
     } else if (ring->c > 0.0f) {
@@ -142,7 +142,8 @@ static ris_vec3 contract_ring(const ris_muscle *muscle, const ring_pose *ring, r
                                     muscle->fiber_count, ring->c);
     }
     if (ring->protrude > 0.0f && !ring->literal) {
-        q = v3_mad(q, ring->protrude, ris__protrude(p, axis[0], axis[1], f, muscle->fiber_count));
+        const float middle = ring->lip ? along : 0.5f; /* a closed ring has no ends to stay */
+        q = v3_mad(q, ring->protrude, ris__protrude(axis[0], axis[1], f, muscle->fiber_count, middle));
     }
     return q;
 }
@@ -169,7 +170,7 @@ void ris__muscle_contract(ris_rig *rig, const float *pose)
             }
             for (uint32_t i = 0; i < muscle->point_count; ++i) {
                 rig->q[first + i] = contract_ring(muscle, &ring, rig->p[first + i], f,
-                                                  f_smoothstep((float)i / (float)(muscle->point_count - 1)));
+                                                  (float)i / (float)(muscle->point_count - 1));
             }
         }
     }

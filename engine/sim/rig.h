@@ -153,10 +153,10 @@ ris_vec3 ris__contract_sphincter(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, float a, 
 #define RIS__LIP_ABOVE_INNER 0.5f
 ris_vec3 ris__contract_lip(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, ris_vec3 side, uint32_t j, uint32_t f,
                            float c, float tie);
-/* What full protrusion moves point p of fibre j of f by in the default tissue: along the axis, by the share RIS__PROTRUDE of the way to
- * its end, the outer fibres less. */
-#define RIS__PROTRUDE 0.15f
-ris_vec3 ris__protrude(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, uint32_t j, uint32_t f);
+/* What full protrusion moves fibre j of f by in the default tissue: along the axis, by the share RIS__PROTRUDE of its length in the
+ * middle of the ring, less the outer fibres, not at all the ends. along: 0 at one end, 1 at the other. */
+#define RIS__PROTRUDE 0.13f
+ris_vec3 ris__protrude(ris_vec3 a0, ris_vec3 a1, uint32_t j, uint32_t f, float along);
 /* A sphincter that closes on a line: p goes the share c of its way to the nearest point of a0-a1. */
 ris_vec3 ris__contract_slit(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, float c);
 /* KA-33. Moves n points to their rest distance from the centroid weighted with 1 + lambda c; rest gives

@@ -26,7 +26,8 @@ static ris_head cap(float radius, float step)
     static ris_vec3 p[SIDE * SIDE];
     static uint32_t corners[(SIDE - 1) * (SIDE - 1)], v[4 * (SIDE - 1) * (SIDE - 1)];
     for (uint32_t i = 0; i < SIDE * SIDE; ++i) {
-        const float x = 2.5f * ((float)(i % SIDE) - 12.0f), y = 2.5f * ((float)(i / SIDE) - 12.0f);
+        const uint32_t row = i / SIDE, column = i % SIDE;
+        const float x = 2.5f * ((float)column - 12.0f), y = 2.5f * ((float)row - 12.0f);
         p[i] = v3(x, y, radius > 0.0f ? sqrtf(radius * radius - x * x - y * y) - radius : 0.0f);
         p[i].z += x > 0.0f ? step : 0.0f;
     }
@@ -80,7 +81,8 @@ static float share_in_layer(const half_baked *half, const ris_bake_grid *g, floa
         for (uint32_t c = 0; c + 1 < g->columns; ++c) {
             const ris_vec3 *p = g->point + r * g->columns + c, *n = g->normal + r * g->columns + c;
             for (uint32_t k = 0; k < 64; ++k) {
-                const float u = ((float)(k / 8) + 0.5f) / 8.0f, v = ((float)(k % 8) + 0.5f) / 8.0f;
+                const uint32_t i = k / 8, j = k % 8;
+                const float u = ((float)i + 0.5f) / 8.0f, v = ((float)j + 0.5f) / 8.0f;
                 const ris_vec3 at =
                     v3_lerp(v3_lerp(p[0], p[1], v), v3_lerp(p[g->columns], p[g->columns + 1], v), u);
                 const ris_vec3 up =

@@ -191,7 +191,8 @@ static ris_head flat_head(void)
     static ris_vec3 p[SIDE * SIDE];
     static uint32_t corners[(SIDE - 1) * (SIDE - 1)], v[4 * (SIDE - 1) * (SIDE - 1)];
     for (uint32_t i = 0; i < SIDE * SIDE; ++i) {
-        p[i] = v3(2.5f * ((float)(i % SIDE) - 12.0f), 2.5f * ((float)(i / SIDE) - 12.0f), 0.0f);
+        const uint32_t row = i / SIDE, column = i % SIDE;
+        p[i] = v3(2.5f * ((float)column - 12.0f), 2.5f * ((float)row - 12.0f), 0.0f);
     }
     for (uint32_t f = 0; f < (SIDE - 1) * (SIDE - 1); ++f) {
         const uint32_t a = f / (SIDE - 1) * SIDE + f % (SIDE - 1),
