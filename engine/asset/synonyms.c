@@ -17,6 +17,11 @@ static const char *const synonym[][2] = {
     {"occipitofrontalis_inner", "frontalis_inner"},
     {"occipitofrontalis_outer", "frontalis_outer"},
     {"levator_palpebrae", "levator_palpebrae_superioris"},
+    {"medial_pterygoid", "pterygoideus_medialis"},
+    {"lateral_pterygoid", "pterygoideus_lateralis"},
+    {"internal_pterygoid", "pterygoideus_medialis"},
+    {"external_pterygoid", "pterygoideus_lateralis"},
+    {"mylohyoid", "mylohyoideus"},
 };
 
 const char *ris__name_of_synonym(const char *name, char out[RIS_NAME_SIZE])

@@ -1,5 +1,5 @@
 /* The readers behind head.json. The first byte picks one: r regions, m muscles, t tissue, j jaw, e
- * expressions, d depth.csv, k skin.map. The skin is a fan of 8 vertices. */
+ * expressions, d depth.csv, k skin.map, g guidance.csv. The skin is a fan of 8 vertices. */
 #include "fuzz.h"
 
 #include "asset/head_parts.h"
@@ -13,6 +13,9 @@ static ris_result read_text(char kind, const char *text, size_t size, ris_head *
     ris_json json;
     if (kind == 'd') {
         return ris__depth_read("input", text, size, head, err);
+    }
+    if (kind == 'g') {
+        return ris__guidance_read("input", text, size, head, err);
     }
     if (kind == 'k') {
         return ris__map_read("input", text, size, head, err);
@@ -49,7 +52,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     ris_head head = {.skin.vertex_count = VERTICES};
     ris_error err = {0};
-    if (size == 0 || !strchr("rmtjedk", data[0]) || data[0] == 0) {
+    if (size == 0 || !strchr("rmtjedkg", data[0]) || data[0] == 0) {
         return 0;
     }
     ris_result result = read_text((char)data[0], (const char *)data + 1, size - 1, &head, &err);
@@ -62,6 +65,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     }
     for (uint32_t i = 0; result == RIS_OK && data[0] == 'd' && i < VERTICES; i++) {
         FUZZ_CHECK(head.depth_mm[i] >= 0 && head.jaw_weight[i] >= 0 && head.jaw_weight[i] <= 1);
+    }
+    for (uint32_t i = 1; result == RIS_OK && i < head.guidance.forward_count; i++) {
+        FUZZ_CHECK(head.guidance.forward_mm[i] > head.guidance.forward_mm[i - 1] &&
+                   head.guidance.side_count >= 2);
     }
     FUZZ_CHECK(head.tissue.anchor_region_count <= 32);
     ris_head_finish(&head);

@@ -56,6 +56,9 @@ static void test_synonyms(void **state)
         {"depressor_septi_nasi", "depressor_septi"},
         {"occipitofrontalis_inner", "frontalis_inner"},
         {"occipitofrontalis_outer.L", "frontalis_outer.L"},
+        {"medial_pterygoid", "pterygoideus_medialis"},
+        {"external_pterygoid.R", "pterygoideus_lateralis.R"},
+        {"mylohyoid", "mylohyoideus"},
     };
     ris_model *model = NULL;
     ris_error err = {0};

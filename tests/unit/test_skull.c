@@ -155,9 +155,8 @@ static uint32_t crossings_after(double degrees, dvec shift)
         turned.position[i] = dv_add(dv_add(jaw_point, shift), dv(p.x, p.y * c - p.z * s, p.y * s + p.z * c));
     }
     assert_int_equal(ris__bvh_build(&t, &turned, &err), RIS_OK);
-    tri_mesh both[2] = {bone[0], turned};
     bvh trees[2] = {tree[0], t};
-    uint32_t crossing = skull_crossings(both, trees);
+    uint32_t crossing = skull_crossings(trees);
     ris__bvh_finish(&t);
     ris__tri_finish(&turned);
     return crossing;

@@ -205,7 +205,7 @@ typedef struct skull_input {
 } skull_input;
 
 /* Edges of either bone that pierce the other. */
-uint32_t skull_crossings(const tri_mesh bone[2], const bvh tree[2]);
+uint32_t skull_crossings(const bvh tree[2]);
 ris_result skull_measure(const skull_input *in, skull_report *out, ris_error *err);
 void skull_print(const skull_report *r);
 /* The bounds of docs/skull.md; false with the first broken one in err. */

@@ -148,19 +148,6 @@ static void measure_condyles(const skull_input *in, skull_report *out)
     }
 }
 
-static uint32_t piercing_edges(const tri_mesh *mesh, const bvh *other)
-{
-    uint32_t count = 0;
-    for (uint32_t i = 0; i < mesh->triangle_count * 3; i++) {
-        dvec a = mesh->position[mesh->triangle[i]],
-             b = mesh->position[mesh->triangle[i % 3 == 2 ? i - 2 : i + 1]];
-        dvec d = dv_sub(b, a);
-        if (mesh->triangle[i] < mesh->triangle[i % 3 == 2 ? i - 2 : i + 1])
-            count += ris__bvh_ray(other, a, dv_unit(d), 0, dv_length(d)).found;
-    }
-    return count;
-}
-
 /* The neck of a crown is the end towards its bone; the root goes on from there, leaning a little inwards. */
 static void measure_roots(const skull_input *in, skull_report *out)
 {
@@ -186,9 +173,10 @@ static void measure_roots(const skull_input *in, skull_report *out)
     }
 }
 
-uint32_t skull_crossings(const tri_mesh bone[2], const bvh tree[2])
+uint32_t skull_crossings(const bvh tree[2])
 {
-    return piercing_edges(&bone[1], &tree[0]) + piercing_edges(&bone[0], &tree[1]);
+    static const float rest[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+    return ris__bvh_crossings(&tree[1], rest, &tree[0], UINT32_MAX);
 }
 
 ris_result skull_measure(const skull_input *in, skull_report *out, ris_error *err)
@@ -207,7 +195,7 @@ ris_result skull_measure(const skull_input *in, skull_report *out, ris_error *er
     measure_openings(in, out);
     measure_condyles(in, out);
     measure_roots(in, out);
-    out->crossing = skull_crossings(in->bone, in->tree);
+    out->crossing = skull_crossings(in->tree);
     return RIS_OK;
 }
 
