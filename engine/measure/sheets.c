@@ -1,11 +1,14 @@
 /* Lips and lids in each other: a vertex of one sheet is inside the other when it lies behind the nearest triangle of
  * that sheet and faces against it. Behind is decided by the pseudonormal of the nearest feature (of a triangle, an edge
- * or, weighted by angles, a vertex: Baerentzen and Aanaes 2005), since the normal of one triangle alone errs at edges. */
+ * or, weighted by angles, a vertex: Baerentzen and Aanaes 2005), since the normal of one triangle alone errs at edges. A sheet that is itself crumpled at its end would
+ * still lie to its surroundings, so the sheet as a whole is asked too: seen from behind it fills a part of the
+ * sphere, with the sign of its faces (solid angle of triangles: Van Oosterom and Strackee 1983). */
 #include "measure/measure_impl.h"
 
 #include <stdlib.h>
 
 #define REACH_MM 5.0    /* deeper than this is no lip but another part of the mouth */
+#define BEHIND 0.1      /* share of the sphere from which on its sign counts; 0.5 just behind a plane */
 #define ON_FEATURE 1e-7 /* barycentric share below which a closest point lies on an edge or vertex */
 
 static bool all_of(const bool *flag, const uint32_t *v)
@@ -139,6 +142,21 @@ static bool pseudonormal(const ris_sheet *sheet, const tri_mesh *mesh, const bvh
     return true;
 }
 
+/* Signed share of the sphere that a mesh fills from p, positive from behind. */
+static double share_of_sphere(const tri_mesh *mesh, dvec p)
+{
+    double sum = 0;
+    for (uint32_t t = 0; t < mesh->triangle_count; ++t) {
+        const uint32_t *v = mesh->triangle + 3 * (size_t)t;
+        const dvec a = dv_sub(mesh->position[v[0]], p), b = dv_sub(mesh->position[v[1]], p),
+                   c = dv_sub(mesh->position[v[2]], p);
+        const double la = dv_length(a), lb = dv_length(b), lc = dv_length(c);
+        const double below = ((la * lb) * lc + dv_dot(a, b) * lc) + (dv_dot(b, c) * la + dv_dot(c, a) * lb);
+        sum += 2 * atan2(dv_dot(a, dv_cross(b, c)), below);
+    }
+    return sum / (4 * 3.14159265358979323846);
+}
+
 /* How deep a vertex with this normal lies in the sheet, or 0. */
 static double depth_in(const ris_sheet *sheet, const bvh *tree, dvec p, dvec normal)
 {
@@ -147,7 +165,8 @@ static double depth_in(const ris_sheet *sheet, const bvh *tree, dvec p, dvec nor
     if (!hit.found || hit.distance > REACH_MM || !pseudonormal(sheet, tree->mesh, &hit, &n)) {
         return 0;
     }
-    return dv_dot(dv_sub(p, hit.at), n) < 0 && dv_dot(normal, n) < 0 ? hit.distance : 0;
+    const bool behind = dv_dot(dv_sub(p, hit.at), n) < 0 && dv_dot(normal, n) < 0;
+    return behind && share_of_sphere(tree->mesh, p) > BEHIND ? hit.distance : 0;
 }
 
 /* Depth of every node of sheet s in the other (node_count of the sheet). */

@@ -411,6 +411,25 @@ static void behind_a_ridge(void **state)
     close_bench(&b, &head);
 }
 
+/* One crumpled triangle at the end of a sheet shows its back to everything before it; the sheet as a whole does not. */
+static void before_a_crumpled_sheet(void **state)
+{
+    (void)state;
+    ris_head head = lips_head(false);
+    bench b = open_bench(&head);
+    for (uint32_t i = 25; i < 50; ++i) {
+        b.x[i].y += 20;
+    }
+    b.x[12].y =
+        1; /* a fold in the middle of the lower lip: its tip leans over the neighbour and looks down */
+    b.x[12].x += 3;
+    b.x[37] = (ris_vec4){8.6f, 0.95f, -4, b.x[37].w}; /* before the tip */
+    assert_mm(measure(&b, RIS_MEASURE_LIPS)->value, 0);
+    b.x[37] = (ris_vec4){4, -0.5f, -4, b.x[37].w}; /* still found behind the sheet */
+    assert_true(measure(&b, RIS_MEASURE_LIPS)->value > 0.2);
+    close_bench(&b, &head);
+}
+
 /* Signed area in the plane: an independent witness for the flat grid. */
 static uint32_t turned_in_plane(const bench *b)
 {
@@ -506,13 +525,13 @@ static void mirrored_skins(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(depth_in_a_cube),     cmocka_unit_test(components_count_apart),
-        cmocka_unit_test(holes_are_capped),    cmocka_unit_test(skin_in_bone),
-        cmocka_unit_test(bone_in_skin),        cmocka_unit_test(rest_is_the_zero),
-        cmocka_unit_test(parts_are_found),     cmocka_unit_test(lip_in_lip),
-        cmocka_unit_test(behind_a_ridge),      cmocka_unit_test(triangles_turned_over),
-        cmocka_unit_test(turned_over_at_rest), cmocka_unit_test(mirrored_poses),
-        cmocka_unit_test(mirrored_skins),
+        cmocka_unit_test(depth_in_a_cube),       cmocka_unit_test(components_count_apart),
+        cmocka_unit_test(holes_are_capped),      cmocka_unit_test(skin_in_bone),
+        cmocka_unit_test(bone_in_skin),          cmocka_unit_test(rest_is_the_zero),
+        cmocka_unit_test(parts_are_found),       cmocka_unit_test(lip_in_lip),
+        cmocka_unit_test(behind_a_ridge),        cmocka_unit_test(before_a_crumpled_sheet),
+        cmocka_unit_test(triangles_turned_over), cmocka_unit_test(turned_over_at_rest),
+        cmocka_unit_test(mirrored_poses),        cmocka_unit_test(mirrored_skins),
     };
     return cmocka_run_group_tests(tests, frames_at_rest, NULL);
 }
