@@ -422,6 +422,20 @@ static void free_lid_bake(lid_bake *b)
     free(b->node);
 }
 
+/* A node of the lining hangs on the nearest node of the lid's inner edge. */
+static void hang_lining(const lid_bake *b, uint32_t from, uint32_t to, int32_t ring)
+{
+    if (b->ring[from] != ring || b->ring[to] != ring - 1) {
+        return;
+    }
+    uint32_t *facing = b->node[to].facing;
+    const ris_vec3 p = from_eye(b, to);
+    if (b->ring[facing[0]] != ring ||
+        v3_distance(p, from_eye(b, from)) < v3_distance(p, from_eye(b, facing[0]))) {
+        facing[0] = facing[1] = from;
+    }
+}
+
 /* Appends the moving nodes of one eye to the model, facing turned into lid indices. */
 static void keep_nodes(const lid_bake *b)
 {
@@ -458,6 +472,7 @@ static ris_result bake_eye(ris_bake *bake, uint8_t eye, ris_error *err)
         make_columns(&b, last);
         limit_columns(&b);
         finish_nodes(&b);
+        each_edge(&b, hang_lining, 0);
         keep_nodes(&b);
     }
     free_lid_bake(&b);

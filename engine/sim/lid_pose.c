@@ -119,7 +119,7 @@ static ris_vec3 place(const lid_state *s, const ris_rig *rig, const ris_lid_node
     }
     const ris_vec3 facing =
         v3_lerp(rig->lid_move[lid->facing[0]], rig->lid_move[lid->facing[1]], lid->facing_share);
-    p = v3_add(p, v3_lerp(rig->lid_move[k], facing, shut));
+    p = v3_add(p, v3_lerp(rig->lid_move[k], facing, lid->lining ? 1.0f : shut));
     return lid->lining ? p : clear_eye(s, eye, lid, rest, p);
 }
 
@@ -137,7 +137,8 @@ void ris__lid_pose(ris_rig *rig, const float *pose)
         const lid_state *s = &state[lid->eye];
         const uint32_t i = lid->node;
         const ris_vec3 centre = model->lid_eye[lid->eye].centre;
-        const ris_vec3 before = v3_sub(rig->target[i], v4_xyz(rig->delta[i])), move = rig->lid_move[k];
+        const ris_vec3 before = v3_sub(rig->target[i], v4_xyz(rig->delta[i])),
+                       move = rig->lid_move[lid->lining ? lid->facing[0] : k];
         if (s->still && move.x == 0.0f && move.y == 0.0f && move.z == 0.0f) {
             continue;
         }

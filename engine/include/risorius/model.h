@@ -89,7 +89,9 @@ typedef struct ris_lid_eye {
  * centre of the eye. Weights are 1 at the margin and 0 at the border of the lid's region. */
 typedef struct ris_lid_node {
     uint32_t node;
-    uint32_t facing[2]; /* lower margin that the node's column meets when closed: into ris_model.lid */
+    /* lower margin that the node's column meets when closed; of the lining twice the node it hangs on: into
+     * ris_model.lid */
+    uint32_t facing[2];
     float facing_share; /* 0..1, of facing[1] */
     uint8_t eye;        /* 0 = L, 1 = R */
     bool upper, lining;
