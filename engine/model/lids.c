@@ -14,6 +14,7 @@
 #define LID_SKIN 0.1f       /* stiffness of the thinnest skin of the face, relative to the rest */
 #define STRETCHES 0.88f     /* outer part of a column that stretches; the rest is as rigid as the ledge */
 #define PRESS_MM 0.15f      /* closed margins press into each other: the drawn surface rounds their edges */
+#define LEDGE_KEEPS 0.6f    /* share of the ledge's turn beyond its inner corner */
 #define LINING_RINGS 1
 #define NO_RING INT32_MAX
 
@@ -178,7 +179,8 @@ static int32_t make_rings(const lid_bake *b)
     return last - 1;
 }
 
-/* Nodes of one ring of a lid with its corners, ascending x (insertion: a ring is short). */
+/* Nodes of one ring of a lid with its corners, ascending x (insertion: a ring is short); of equal x the higher one is
+ * nearer to the nose, so that the eyes mirror each other. */
 static uint32_t sorted_ring(const lid_bake *b, int32_t ring, uint8_t kind)
 {
     uint32_t count = 0;
@@ -186,9 +188,13 @@ static uint32_t sorted_ring(const lid_bake *b, int32_t ring, uint8_t kind)
         if (b->ring[i] != ring || !(b->kind[i] & kind)) {
             continue;
         }
-        const float x = b->model->rest_position[i].x;
+        const ris_vec4 p = b->model->rest_position[i];
         uint32_t k = count++;
-        for (; k > 0 && b->model->rest_position[b->lower[k - 1]].x > x; --k) {
+        for (; k > 0; --k) {
+            const ris_vec4 q = b->model->rest_position[b->lower[k - 1]];
+            if (!(q.x > p.x || (q.x == p.x && (b->eye ? q.y > p.y : q.y < p.y)))) {
+                break;
+            }
             b->lower[k] = b->lower[k - 1];
         }
         b->lower[k] = i;
@@ -205,7 +211,7 @@ static uint32_t find_segment(const lid_bake *b, uint32_t count, float x, float *
     }
     const float from = b->model->rest_position[b->lower[k]].x,
                 to = b->model->rest_position[b->lower[k + 1]].x;
-    *share = to > from ? f_clamp((x - from) / (to - from), 0.0f, 1.0f) : 0.0f;
+    *share = to > from ? f_clamp((x - from) / (to - from), 0.0f, 1.0f) : x > from ? 1.0f : 0.0f;
     return k;
 }
 
@@ -316,12 +322,14 @@ static void make_columns(lid_bake *b, int32_t last)
 
 /* Columns fan out towards the corners of the eye, so there the skin behind the margin lies over less of the opening than
  * its column, or beside it: it turns no farther than down to the lower margin (or the corner) at its own x, else it
- * would sink past the corner, which stays, and fold over. */
-static void limit_columns(const lid_bake *b)
+ * would sink past the corner, which stays, and fold over. The same for the ledge over the inner edge of the lower lid, of
+ * which the corner lies deeper in; but it must go with the margin, and keeps a share of what is beyond.
+ * ring: of the lower lid; first, last: rings of the upper lid. */
+static void limit_columns(const lid_bake *b, int32_t ring, int32_t first, int32_t last, float keep)
 {
-    const uint32_t count = sorted_ring(b, b->margin, KIND_LOWER);
+    const uint32_t count = sorted_ring(b, ring, KIND_LOWER);
     for (uint32_t i = 0; count > 1 && i < b->model->node_count; ++i) {
-        if (b->ring[i] == NO_RING || b->ring[i] <= b->margin || b->kind[i] != KIND_UPPER) {
+        if (b->ring[i] < first || b->ring[i] > last || b->kind[i] != KIND_UPPER) {
             continue;
         }
         ris_lid_node *node = &b->node[i];
@@ -330,8 +338,9 @@ static void limit_columns(const lid_bake *b)
         const float from = elevation(b, b->lower[k]), to = elevation(b, b->lower[k + 1]);
         const float room = f_max(elevation(b, i) - (from + s * (to - from)), 0.0f);
         if (room < node->close_rad) {
-            node->close_mm *= room / node->close_rad;
-            node->close_rad = room;
+            const float turn = room + keep * (node->close_rad - room);
+            node->close_mm *= turn / node->close_rad;
+            node->close_rad = turn;
         }
     }
 }
@@ -470,7 +479,8 @@ static ris_result bake_eye(ris_bake *bake, uint8_t eye, ris_error *err)
         measure_margin(&b, KIND_UPPER);
         measure_margin(&b, KIND_LOWER);
         make_columns(&b, last);
-        limit_columns(&b);
+        limit_columns(&b, b.margin, b.margin + 1, last, 0.0f);
+        limit_columns(&b, 0, 0, b.margin - 1, LEDGE_KEEPS);
         finish_nodes(&b);
         each_edge(&b, hang_lining, 0);
         keep_nodes(&b);

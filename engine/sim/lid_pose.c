@@ -20,7 +20,7 @@
 #define FULL_MM 0.8f    /* how much a closed lid rounds out between margin and fold */
 #define CLEAR_MM 0.25f  /* nearest a moved anchor comes to the eye */
 #define THICK_SHARE 0.5f /* what lies farther out at rest keeps this share of it ... */
-#define THICK_MM 0.25f   /* ... up to so much, so that a lid pressed on the cornea is not pressed flat */
+#define THICK_MM 0.15f   /* ... up to so much, so that a lid pressed on the cornea is not pressed flat */
 
 /* What moves the lids of one eye this tick. */
 typedef struct lid_state {
