@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const view_names[] = {"front", "34", "profile", NULL};
+static const char *const view_names[] = {"front", "34", "34.R", "profile", "profile.R", NULL};
 
 ris_result studio_views_parse(const char *text, studio_views *out, ris_error *err)
 {
@@ -15,7 +15,8 @@ ris_result studio_views_parse(const char *text, studio_views *out, ris_error *er
             known = known || (strlen(view_names[i]) == length && strncmp(c, view_names[i], length) == 0);
         }
         if (!known) {
-            return ris_fail(err, RIS_ERROR_USAGE, "--view: expected front, 34 or profile, found '%.*s'",
+            return ris_fail(err, RIS_ERROR_USAGE,
+                            "--view: expected front, 34, 34.R, profile or profile.R, found '%.*s'",
                             (int)(length < 64 ? length : 64), c);
         }
         if (out->count == STUDIO_VIEW_CAPACITY) {

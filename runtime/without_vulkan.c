@@ -30,6 +30,13 @@ static ris_result run_validate(ris_cli *cli, int argc, char **argv, ris_error *e
     return refuse(cli, &cmd_validate, argc, argv, err);
 }
 
+static ris_result run_plate(ris_cli *cli, int argc, char **argv, ris_error *err)
+{
+    return refuse(cli, &cmd_plate, argc, argv, err);
+}
+
+const cli_command cmd_plate = {
+    .name = "plate", .usage = "HEAD -o FILE.png", .summary = "(needs Vulkan)", .run = run_plate};
 const cli_command cmd_view = {.name = "view", .usage = "HEAD", .summary = "(needs Vulkan)", .run = run_view};
 const cli_command cmd_compare = {
     .name = "compare", .usage = "HEAD --clip C", .summary = "(needs Vulkan)", .run = run_compare};

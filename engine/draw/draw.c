@@ -27,6 +27,7 @@ ris_result ris_draw_create(ris_device *device, const ris_model *model, const ris
     draw->device = device;
     draw->model = model;
     draw->wireframe = def->wireframe;
+    draw->paper = def->paper;
     draw->shown = RIS_LAYER_SKIN;
     RIS_TRY(ris__draw_scene_build(model, &draw->scene, err));
     RIS_TRY(ris__draw_store_create(draw, err));

@@ -58,7 +58,7 @@ struct ris_draw {
     ris_vk_cmd cmd, copy;
     ris_draw_layers layers;
     uint32_t shown; /* ris_layer mask */
-    bool wireframe, drawn;
+    bool wireframe, paper, drawn;
 };
 
 /* store.c */
@@ -88,6 +88,8 @@ void ris__draw_view_fill(const ris_draw *draw, const ris_camera *camera, const f
 /* frame.c: one object with the pipeline and the index buffer that are bound; its set when it has nothing special */
 void ris__draw_object(const ris_draw *draw, VkCommandBuffer cmd, const ris_sim *sim,
                       const ris_draw_item *item, VkDescriptorSet set);
+/* row-major 3x4: bone, then head pose */
+void ris__draw_place(const ris_sim *sim, ris_bone bone, float out[12]);
 VkDescriptorSet ris__draw_set_of(const ris_draw *draw, const ris_draw_item *item);
 /* soft.c: writes the parts that change their shape into the surface; area-weighted normals of a mesh at position */
 ris_result ris__draw_soft_record(ris_draw *draw, VkCommandBuffer cmd, const ris_sim *sim, ris_error *err);

@@ -48,6 +48,18 @@ static void chain(const float a[12], const float b[12], float out[12])
     }
 }
 
+void ris__draw_place(const ris_sim *sim, ris_bone bone, float out[12])
+{
+    static const float identity[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+    float head[12], own[12];
+    ris_sim_head_transform(sim, head);
+    memcpy(own, identity, sizeof own);
+    if (bone != RIS_BONE_SKIN) {
+        ris_sim_bone_transform(sim, bone, own);
+    }
+    chain(head, own, out);
+}
+
 VkDescriptorSet ris__draw_set_of(const ris_draw *draw, const ris_draw_item *item)
 {
     return draw->graphics_sets[item->texture != UINT32_MAX ? item->texture : draw->store.texture_count]
@@ -57,15 +69,9 @@ VkDescriptorSet ris__draw_set_of(const ris_draw *draw, const ris_draw_item *item
 void ris__draw_object(const ris_draw *draw, VkCommandBuffer cmd, const ris_sim *sim,
                       const ris_draw_item *item, VkDescriptorSet set)
 {
-    static const float identity[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
-    float head[12], bone[12], place[12];
+    float place[12];
     bool textured = item->texture != UINT32_MAX;
-    ris_sim_head_transform(sim, head);
-    memcpy(bone, identity, sizeof bone);
-    if (item->bone != RIS_BONE_SKIN) {
-        ris_sim_bone_transform(sim, item->bone, bone);
-    }
-    chain(head, bone, place);
+    ris__draw_place(sim, item->bone, place);
     ris_draw_object object = {.tint = {item->tint.x, item->tint.y, item->tint.z, textured ? 1.0f : 0.0f},
                               .pivot = {item->pivot.x, item->pivot.y, item->pivot.z, RELIEF_MM}};
     memcpy(object.place, place, sizeof place);

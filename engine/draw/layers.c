@@ -48,10 +48,11 @@ static ris_result count_all(ris_draw *draw, layer_build *build, ris_error *err)
         layers->bone_vertex_count + layers->muscles.vertex_count + layers->marks.vertex_count;
     layers->index_count = layers->bone_index_count + layers->muscles.index_count + layers->marks.index_count;
     layers->shown = calloc(draw->model->muscle_count + 1u, sizeof *layers->shown);
+    layers->bone_index = calloc(layers->bone_index_count + 1u, sizeof *layers->bone_index);
     layers->node = calloc(draw->model->node_count + 1u, sizeof *layers->node);
     build->corner = calloc(layers->vertex_count + 1u, sizeof *build->corner);
     build->index = calloc(layers->index_count + 1u, sizeof *build->index);
-    if (!layers->shown || !layers->node || !build->corner || !build->index) {
+    if (!layers->shown || !layers->bone_index || !layers->node || !build->corner || !build->index) {
         return ris_fail(err, RIS_ERROR_MEMORY, "out of memory for the layers of the head");
     }
     memset(layers->shown, true, draw->model->muscle_count * sizeof *layers->shown);
@@ -108,6 +109,7 @@ static void add_bones(ris_draw_layers *layers, layer_build *build)
         }
         vertex += bone->vertex_count;
     }
+    memcpy(layers->bone_index, build->index, layers->bone_index_count * sizeof *layers->bone_index);
 }
 
 static void add_muscles(const ris_draw *draw, layer_build *build)
@@ -227,6 +229,7 @@ void ris__draw_layers_finish(ris_draw *draw)
     ris__muscle_mesh_finish(&layers->muscles);
     ris__marks_finish(&layers->marks);
     free(layers->shown);
+    free(layers->bone_index);
     free(layers->node);
     *layers = (ris_draw_layers){0};
 }

@@ -26,6 +26,7 @@ typedef struct ris_draw_layers {
     bool ready;
     ris_layer_bone bone[2]; /* skull, mandible */
     uint32_t bone_count, bone_vertex_count, bone_index_count;
+    uint32_t *bone_index; /* into the vertices of the bones (bone_index_count) */
     ris_muscle_mesh muscles;
     bool *shown; /* (muscle_count) */
     ris_marks marks;

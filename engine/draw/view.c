@@ -6,6 +6,7 @@
 #include <string.h>
 
 #define PI 3.14159265358979f
+#define PAPER 0.92f /* linear grey */
 
 static float dot(ris_vec3 a, ris_vec3 b)
 {
@@ -68,14 +69,16 @@ static void frame_nodes(const ris_model *model, ris_vec3 *centre, float *half, f
 
 bool ris_camera_named(const ris_model *model, const char *name, ris_camera *out)
 {
-    float turn_deg;
-    if (strcmp(name, "front") == 0) {
-        turn_deg = 0.0f;
-    } else if (strcmp(name, "34") == 0) {
-        turn_deg = 38.0f;
-    } else if (strcmp(name, "profile") == 0) {
-        turn_deg = 90.0f;
-    } else {
+    static const struct {
+        const char *name;
+        float turn_deg; /* to the subject's left */
+    } views[] = {{"front", 0.0f}, {"34", 38.0f}, {"34.R", -38.0f}, {"profile", 90.0f}, {"profile.R", -90.0f}};
+    const size_t count = sizeof views / sizeof views[0];
+    size_t view = 0;
+    while (view < count && strcmp(name, views[view].name) != 0) {
+        view++;
+    }
+    if (view == count) {
         return false;
     }
     ris_vec3 centre;
@@ -84,7 +87,7 @@ bool ris_camera_named(const ris_model *model, const char *name, ris_camera *out)
         frame_nodes(model, &centre, &half, &depth);
     }
     float away = half / tanf(0.5f * fov_deg * PI / 180.0f) + depth;
-    float turn = turn_deg * PI / 180.0f;
+    float turn = views[view].turn_deg * PI / 180.0f;
     *out = (ris_camera){.eye = {centre.x + away * sinf(turn), centre.y, centre.z + away * cosf(turn)},
                         .target = centre,
                         .up = {0.0f, 1.0f, 0.0f},
@@ -149,6 +152,7 @@ void ris__draw_view_fill(const ris_draw *draw, const ris_camera *camera, const f
     out->ground = (ris_vec4){0.17f, 0.15f, 0.14f, 0.0f};
     light_rows((ris_vec3){out->light[0].x, out->light[0].y, out->light[0].z}, centre, radius, out->shadow);
     out->mouth = scene->mouth;
+    out->mouth.z = draw->paper ? PAPER : 0.0f;
     memcpy(out->lip, scene->lip, sizeof out->lip);
     memcpy(out->apart, scene->apart, sizeof out->apart);
     memcpy(out->fade, scene->fade, sizeof out->fade);

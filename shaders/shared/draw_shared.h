@@ -89,7 +89,7 @@ RIS_DRAW_STRUCT(ris_draw_view)
         light[3]; /* key, fill, rim: unit direction towards the light, w = half angle of the lamp, radians */
     ris_draw_v4 radiance[3]; /* linear RGB, w unused */
     ris_draw_v4 sky, ground; /* ambient from above and below, linear RGB */
-    ris_draw_v4 mouth;       /* x = depth of the teeth's front at rest, mm; y = fall-off, mm; zw unused */
+    ris_draw_v4 mouth;       /* x = depth of the teeth's front at rest, mm; y = fall-off, mm; z = grey of a flat backdrop, 0 = studio */
     ris_draw_uint lip[6];    /* three pairs of surface vertices, upper and lower lip; equal = none */
     ris_draw_float apart[3]; /* distance of each pair at rest, mm */
     ris_draw_float

@@ -91,6 +91,50 @@ static void a_pose_gives_a_picture(void **state)
     picture_finish(&shot);
 }
 
+static void layers_give_other_pictures(void **state)
+{
+    (void)state;
+    static const char *const layers[] = {"skin", "muscles,skull", "skin,muscles,skull,springs,landmarks",
+                                         "strain"};
+    picture before = {0};
+    for (size_t i = 0; i < sizeof layers / sizeof layers[0]; i++) {
+        char line[1024];
+        picture shot;
+        snprintf(line, sizeof line,
+                 "render " HEAD " --pose zygomaticus_major=1 -o x.png --size 96x128 --layers %s", layers[i]);
+        expect("layers", NULL, line, 0, 1);
+        load_picture("x.png", &shot);
+        assert_false(picture_is_blank(&shot));
+        if (before.rgba) {
+            assert_memory_not_equal(before.rgba, shot.rgba, (size_t)shot.width * (size_t)shot.height * 4);
+            picture_finish(&before);
+        }
+        before = shot;
+    }
+    picture_finish(&before);
+}
+
+static void a_plate_names_every_muscle(void **state)
+{
+    (void)state;
+    expect("plate", NULL, "plate " HEAD " -o plate.png --size 1200x480 --json", 0, 1);
+    picture shot;
+    load_picture("plate.png", &shot);
+    assert_int_equal(shot.width, 1200);
+    assert_int_equal(shot.height, 480);
+    assert_false(picture_is_blank(&shot));
+    picture_finish(&shot);
+    json_t *report = json_loads(run.out, 0, NULL);
+    assert_non_null(report);
+    assert_true(json_integer_value(json_object_get(report, "muscles")) > 40);
+    assert_int_equal(json_integer_value(json_object_get(report, "named")),
+                     json_integer_value(json_object_get(report, "muscles")));
+    assert_int_equal(json_array_size(json_object_get(report, "hidden")), 0);
+    json_decref(report);
+    expect("plate", NULL, "plate " HEAD, 2, 0);
+    expect("plate", NULL, "plate " HEAD " -o x.png --size 100x100", 2, 0);
+}
+
 /* A clip of half a second whose jaw opens. */
 static void write_short_clip(char out[COMMAND_PATH_SIZE + 16])
 {
@@ -217,6 +261,8 @@ int main(void)
         cmocka_unit_test(an_unknown_device_is_not_replaced),
         cmocka_unit_test(the_cpu_is_not_compared_with_itself),
         cmocka_unit_test(a_pose_gives_a_picture),
+        cmocka_unit_test(layers_give_other_pictures),
+        cmocka_unit_test(a_plate_names_every_muscle),
         cmocka_unit_test(a_clip_gives_all_outputs_at_once),
         cmocka_unit_test(a_full_disk_leaves_nothing),
         cmocka_unit_test(without_ffmpeg_a_video_fails),

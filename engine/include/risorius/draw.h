@@ -15,7 +15,8 @@ typedef struct ris_camera {
     float fov_y_deg;
 } ris_camera;
 
-/* "front", "34" (three-quarter from the subject's left), "profile"; false if unknown. Frames the face of the model. */
+/* "front", "34" (three-quarter from the subject's left), "profile" (the left one), "34.R" and "profile.R" from the right;
+ * false if unknown. Frames the face of the model. */
 bool ris_camera_named(const ris_model *model, const char *name, ris_camera *out);
 
 /* What is shown; a mask. With what lies inside (muscles, skull, landmarks) the skin is drawn as glass. */
@@ -42,6 +43,7 @@ typedef struct ris_draw_def {
     uint32_t width, height; /* pixels */
     bool wireframe;
     uint32_t layers; /* ris_layer mask; 0 = skin */
+    bool paper;      /* a flat light background instead of the studio's */
 } ris_draw_def;
 
 /* Loads textures and parts of the model's head to the device. Errors: RIS_ERROR_DEVICE, RIS_ERROR_DATA (textures). */
@@ -54,6 +56,10 @@ void ris_draw_set_wireframe(ris_draw *draw, bool wireframe);
 ris_result ris_draw_set_layers(ris_draw *draw, uint32_t layers, ris_error *err);
 /* Which muscles the layer shows: one flag each (muscle_count), NULL = all. After ris_draw_set_layers with muscles. */
 void ris_draw_set_muscles(ris_draw *draw, const bool *shown);
+/* Which muscle a picture of width x height shows at each pixel (muscle index, UINT32_MAX = none), of the layers and
+ * muscles that are shown; bones hide, the skin does not. By the host, at the last tick of sim (width x height). */
+ris_result ris_draw_muscle_map(ris_draw *draw, const ris_sim *sim, const ris_camera *camera, uint32_t width,
+                               uint32_t height, uint32_t *out, ris_error *err);
 /* Draws the present state of sim. A Vulkan sim on the same device is read in place; any other is uploaded. */
 ris_result ris_draw_frame(ris_draw *draw, ris_sim *sim, const ris_camera *camera, ris_error *err);
 /* The same with positions and normals given (interpolated output frames); (node_count) each, transforms from sim. */

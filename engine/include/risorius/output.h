@@ -41,6 +41,10 @@ ris_result ris_obj_write(const char *path, const ris_obj_object *object, uint32_
 /* Draws a label with a small built-in font into an RGBA image; white with a dark edge. scale in pixels per font unit. */
 void ris_label_draw(uint8_t *rgba, uint32_t width, uint32_t height, int x, int y, int scale,
                     const char *text);
+/* The same font in plain ink without an edge, at fractions of a pixel. Capitals are 7 units high. */
+void ris_label_ink(uint8_t *rgba, uint32_t width, uint32_t height, float x, float y, float scale,
+                   const uint8_t ink[3], const char *text);
+float ris_label_width(float scale, const char *text);
 
 #ifdef __cplusplus
 }
