@@ -23,19 +23,33 @@ typedef struct plate_args {
 typedef struct plate_figure {
     const char *view, *title;
     bool half;           /* the deep layer on the subject's right, the picture's left */
-    bool rest;           /* only what no figure before it names, without bone */
+    bool below;          /* only deep muscles and those not named before, the mandible taken off */
     label_side side;     /* of the names */
-    float share;         /* of the plate's width */
+    float area[4];       /* left, top, width and height, of the plate's */
     float right, nearer; /* shift of the head in the picture, in heights of it; size */
 } plate_figure;
 
 static const plate_figure figures[] = {
-    {"front", "Anterior view, deep layer on the right half of the face", true, false, LABEL_EITHER, 0.5f,
-     0.0f, 1.0f},
-    {"profile", "Left lateral view", false, false, LABEL_LEFT, 0.5f, 0.13f, 0.93f},
+    {.view = "front",
+     .title = "Anterior view; on the right half of the face the deep layer",
+     .half = true,
+     .side = LABEL_EITHER,
+     .area = {0.0f, 0.0f, 1.0f, 0.52f},
+     .nearer = 1.0f},
+    {.view = "profile",
+     .title = "Left lateral view",
+     .side = LABEL_LEFT,
+     .area = {0.0f, 0.52f, 0.60f, 0.48f},
+     .right = 0.11f,
+     .nearer = 0.95f},
+    {.view = "profile",
+     .title = "The same, deep layer, mandible taken off",
+     .below = true,
+     .side = LABEL_LEFT,
+     .area = {0.60f, 0.52f, 0.40f, 0.48f},
+     .right = 0.14f,
+     .nearer = 1.0f},
 };
-static const plate_figure hidden_figure = {
-    "profile", "Left lateral view, below the bone", false, true, LABEL_LEFT, 1.0f / 3.0f, 0.14f, 0.93f};
 
 /* Zeroed, then filled by open_plate, freed by close_plate in any state. */
 typedef struct plate_job {
@@ -133,13 +147,14 @@ static ris_result choose(plate_job *plate, const plate_figure *figure, const ris
         plate->shown[m] = true;
         plate->deep[m] = false;
     }
-    if (figure->half) {
+    if (figure->half || figure->below) {
         r = peel(plate, camera, width, height, err);
     }
     for (uint32_t m = 0; !r && m < model->muscle_count; m++) {
         const char side = anatomy_side(model->muscle[m].name);
-        plate->shown[m] = plate->shown[m] || (figure->half && side != 'R');
-        plate->shown[m] = plate->shown[m] && !(figure->rest && plate->named[m]);
+        plate->shown[m] = figure->below  ? side != 'R' && (plate->deep[m] || !plate->named[m])
+                          : figure->half ? side != 'R' || plate->shown[m]
+                                         : side != 'R';
     }
     ris_draw_set_muscles(plate->draw, plate->shown);
     return r;
@@ -169,6 +184,20 @@ static void name_deep_on_its_half(plate_job *plate)
     }
 }
 
+/* Columns of a picture between which something other than paper is seen. */
+static void find_content(const uint8_t *rgba, uint32_t width, uint32_t height, float column[2])
+{
+    uint32_t low = width, high = 0;
+    for (size_t i = 0; i < (size_t)width * height; i++) {
+        if (abs((int)rgba[4 * i] - (int)rgba[0]) > 12) {
+            low = i % width < low ? (uint32_t)(i % width) : low;
+            high = i % width > high ? (uint32_t)(i % width) : high;
+        }
+    }
+    column[0] = (float)low;
+    column[1] = (float)high;
+}
+
 static ris_result add_names(plate_job *plate, const plate_figure *figure, uint32_t width, uint32_t height,
                             float scale, ris_error *err)
 {
@@ -186,7 +215,11 @@ static ris_result add_names(plate_job *plate, const plate_figure *figure, uint32
         }
     }
     if (!r) {
-        labels_draw(plate->figure, width, height, plate->label, count, scale, ink);
+        float column[2];
+        find_content(plate->figure, width, height, column);
+        column[0] -= 22.0f * scale;
+        column[1] += 22.0f * scale;
+        labels_draw(plate->figure, width, height, plate->label, count, column, scale, ink);
     }
     return r;
 }
@@ -207,76 +240,65 @@ static void shift(ris_camera *camera, const plate_figure *figure)
     camera->eye.z = camera->target.z + away[2] / figure->nearer;
 }
 
-static ris_result draw_figure(plate_job *plate, const plate_figure *figure, uint32_t left, uint32_t width,
-                              float scale, ris_error *err)
+/* The picture of a figure, into plate->figure, and what is seen in it. */
+static ris_result shoot_figure(plate_job *plate, const plate_figure *figure, uint32_t width, uint32_t height,
+                               ris_error *err)
 {
-    const uint32_t foot = (uint32_t)(16.0f * scale), height = plate->height - foot;
     ris_camera camera;
     if (!ris_camera_named(plate->backend.model, figure->view, &camera)) {
         return ris_fail(err, RIS_ERROR_USAGE, "there is no view '%s' of this head", figure->view);
     }
     shift(&camera, figure);
+    ris_draw_set_mandible(plate->draw, true);
     ris_result r = ris_draw_resize(plate->draw, width, height, err);
-    if (!r) {
-        r = ris_draw_set_layers(plate->draw, RIS_LAYER_MUSCLES | (figure->rest ? 0u : RIS_LAYER_SKULL), err);
-    }
     if (!r) {
         r = choose(plate, figure, &camera, width, height, err);
     }
+    ris_draw_set_mandible(plate->draw, !figure->below);
     if (!r) {
         r = ris_draw_frame(plate->draw, plate->backend.sim, &camera, err);
     }
     if (!r) {
         r = ris_draw_read(plate->draw, plate->figure, err);
     }
-    if (!r) {
-        r = anatomy_look(plate->draw, plate->backend.sim, &camera, width, height, plate->sight, NULL, err);
-    }
+    return r ? r
+             : anatomy_look(plate->draw, plate->backend.sim, &camera, width, height, plate->sight, NULL, err);
+}
+
+static ris_result draw_figure(plate_job *plate, const plate_figure *figure, float scale, ris_error *err)
+{
+    const uint32_t left = (uint32_t)(figure->area[0] * (float)plate->width),
+                   top = (uint32_t)(figure->area[1] * (float)plate->height),
+                   right = (uint32_t)((figure->area[0] + figure->area[2]) * (float)plate->width + 0.5f),
+                   bottom = (uint32_t)((figure->area[1] + figure->area[3]) * (float)plate->height + 0.5f);
+    const uint32_t width = right - left, foot = (uint32_t)(18.0f * scale), height = bottom - top - foot;
+    ris_result r = shoot_figure(plate, figure, width, height, err);
     if (!r) {
         r = add_names(plate, figure, width, height, scale, err);
     }
-    for (uint32_t y = 0; !r && y < plate->height; y++) { /* the foot goes on with the paper of the last row */
-        memcpy(plate->rgba + ((size_t)y * plate->width + left) * 4,
-               plate->figure + (size_t)(y < height ? y : height - 1) * width * 4, (size_t)width * 4);
+    for (uint32_t y = 0; !r && y < height; y++) {
+        memcpy(plate->rgba + ((size_t)(top + y) * plate->width + left) * 4,
+               plate->figure + (size_t)y * width * 4, (size_t)width * 4);
+    }
+    for (uint32_t y = top + height; !r && y < bottom; y++) {
+        for (uint32_t x = left; x < right; x++) {
+            memcpy(plate->rgba + ((size_t)y * plate->width + x) * 4, plate->figure, 4); /* paper */
+        }
     }
     if (!r) {
         const float own = ris_label_width(scale, figure->title);
         ris_label_ink(plate->rgba, plate->width, plate->height, (float)left + 0.5f * ((float)width - own),
-                      (float)height + 3.0f * scale, scale, faint, figure->title);
+                      (float)(top + height) + 4.0f * scale, scale, faint, figure->title);
     }
     return r;
 }
 
-/* True when every muscle of the subject's left and middle stands on the figures drawn so far. */
-static bool all_named(const plate_job *plate)
+static ris_result draw_plate(plate_job *plate, ris_error *err)
 {
-    for (uint32_t m = 0; m < plate->backend.model->muscle_count; m++) {
-        if (!plate->named[m]) {
-            return false;
-        }
-    }
-    return true;
-}
-
-/* The figures side by side; a further one, when there are muscles that bone hides in all of them. */
-static ris_result draw_plate(plate_job *plate, bool with_hidden, ris_error *err)
-{
-    const size_t count = sizeof figures / sizeof figures[0];
-    const float scale = (float)plate->height / 600.0f, room = with_hidden ? 1.0f - hidden_figure.share : 1.0f;
-    uint32_t left = 0;
+    const float scale = (float)plate->height / 1150.0f;
     ris_result r = RIS_OK;
-    memset(plate->named, 0, plate->backend.model->muscle_count * sizeof *plate->named);
-    for (size_t i = 0; !r && i < count; i++) {
-        const bool last = i + 1 == count && !with_hidden;
-        const uint32_t width =
-            last ? plate->width - left : (uint32_t)((float)plate->width * figures[i].share * room);
-        r = draw_figure(plate, &figures[i], left, width, scale, err);
-        left += width;
-    }
-    if (!r && with_hidden) {
-        r = draw_figure(plate, &hidden_figure, left, plate->width - left, scale, err);
-    } else if (!r && !all_named(plate)) {
-        r = draw_plate(plate, true, err);
+    for (size_t i = 0; !r && i < sizeof figures / sizeof figures[0]; i++) {
+        r = draw_figure(plate, &figures[i], scale, err);
     }
     return r;
 }
@@ -313,7 +335,7 @@ static ris_result run(ris_cli *cli, int argc, char **argv, ris_error *err)
     plate_args args = {0};
     const cli_option options[] = {
         {"output", 'o', "FILE.png", "the picture", NULL, &args.out, NULL},
-        {"size", 's', "WxH", "size in pixels (2000x800)", NULL, &args.size, NULL},
+        {"size", 's', "WxH", "size in pixels (1400x1500)", NULL, &args.size, NULL},
         {"pose", 'p', "POSE", "a pose to hold: name=value[,name=value...]", NULL, &args.pose, NULL},
         {0},
     };
@@ -328,7 +350,7 @@ static ris_result run(ris_cli *cli, int argc, char **argv, ris_error *err)
         r = ris_fail(err, RIS_ERROR_USAGE, "plate needs -o FILE.png");
     }
     if (!r) {
-        r = cli_size("size", args.size ? args.size : "2000x800", &plate.width, &plate.height, err);
+        r = cli_size("size", args.size ? args.size : "1400x1500", &plate.width, &plate.height, err);
     }
     if (!r && (plate.width < 320 || plate.height < 128)) {
         r = ris_fail(err, RIS_ERROR_USAGE, "--size: a plate needs 320x128 pixels or more");
@@ -337,7 +359,7 @@ static ris_result run(ris_cli *cli, int argc, char **argv, ris_error *err)
         r = open_plate(&plate, cli, &args, err);
     }
     if (!r) {
-        r = draw_plate(&plate, false, err);
+        r = draw_plate(&plate, err);
     }
     if (!r) {
         r = ris_png_write(args.out, plate.rgba, plate.width, plate.height, err);

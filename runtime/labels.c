@@ -147,7 +147,7 @@ void labels_line(uint8_t *rgba, uint32_t width, uint32_t height, const float fro
 }
 
 void labels_draw(uint8_t *rgba, uint32_t width, uint32_t height, ris_label *label, uint32_t count,
-                 float scale, const uint8_t ink[3])
+                 const float column[2], float scale, const uint8_t ink[3])
 {
     const float margin = 4.0f * scale;
     float widest[2] = {0, 0};
@@ -159,7 +159,8 @@ void labels_draw(uint8_t *rgba, uint32_t width, uint32_t height, ris_label *labe
     for (uint32_t i = 0; i < count; i++) {
         bool left = label[i].side == LABEL_LEFT;
         float own = ris_label_width(scale, label[i].text);
-        float edge = left ? margin + widest[LABEL_LEFT] : (float)width - margin - widest[LABEL_RIGHT];
+        float edge = left ? fmaxf(margin + widest[LABEL_LEFT], column[0])
+                          : fminf((float)width - margin - widest[LABEL_RIGHT], column[1]);
         float sign = left ? 1.0f : -1.0f;
         const float knee[2] = {edge + sign * 10.0f * scale, label[i].text_y},
                     start[2] = {edge + sign * 3.0f * scale, label[i].text_y},

@@ -97,6 +97,11 @@ void ris_draw_set_muscles(ris_draw *draw, const bool *shown)
     }
 }
 
+void ris_draw_set_mandible(ris_draw *draw, bool shown)
+{
+    draw->jawless = !shown;
+}
+
 void *ris_device_instance(ris_device *device)
 {
     return device->instance;

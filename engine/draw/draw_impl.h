@@ -59,6 +59,7 @@ struct ris_draw {
     ris_draw_layers layers;
     uint32_t shown; /* ris_layer mask */
     bool wireframe, paper, drawn;
+    bool jawless; /* no mandible in the layer of the skull */
 };
 
 /* store.c */

@@ -32,6 +32,9 @@ static void draw_bones(const ris_draw *draw, VkCommandBuffer cmd, const ris_sim 
 {
     const ris_draw_layers *layers = &draw->layers;
     for (uint32_t i = 0; i < layers->bone_count; i++) {
+        if (draw->jawless && layers->bone[i].bone == RIS_BONE_JAW) {
+            continue;
+        }
         const ris_draw_item item = {.bone = layers->bone[i].bone,
                                     .first_index = layers->bone[i].first_index,
                                     .index_count = layers->bone[i].index_count,
@@ -79,7 +82,7 @@ static void draw_parts(const ris_draw *draw, VkCommandBuffer cmd, const ris_sim 
     bind(draw, cmd, pipe, draw->store.index.handle);
     for (uint32_t i = 0; i < draw->scene.item_count; i++) {
         const ris_draw_item *item = &draw->scene.item[i];
-        if (wanted(item)) {
+        if (wanted(item) && !(draw->jawless && is_tooth(item) && item->bone == RIS_BONE_JAW)) {
             ris__draw_object(draw, cmd, sim, item, ris__draw_set_of(draw, item));
         }
     }

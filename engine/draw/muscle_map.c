@@ -87,6 +87,9 @@ static void fill_layers(const ris_draw *draw, const ris_sim *sim, const canvas *
     ris_sim_head_transform(sim, head);
     for (uint32_t b = 0; b < layers->bone_count && (draw->shown & RIS_LAYER_SKULL); b++) {
         float place[12];
+        if (draw->jawless && layers->bone[b].bone == RIS_BONE_JAW) {
+            continue;
+        }
         ris__draw_place(sim, layers->bone[b].bone, place);
         fill_all(to, place, position, layers->bone_index + layers->bone[b].first_index,
                  layers->bone[b].index_count, BONE);

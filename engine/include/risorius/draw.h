@@ -56,6 +56,8 @@ void ris_draw_set_wireframe(ris_draw *draw, bool wireframe);
 ris_result ris_draw_set_layers(ris_draw *draw, uint32_t layers, ris_error *err);
 /* Which muscles the layer shows: one flag each (muscle_count), NULL = all. After ris_draw_set_layers with muscles. */
 void ris_draw_set_muscles(ris_draw *draw, const bool *shown);
+/* Leaves the mandible and its teeth out of the skull's layer, to see what lies behind it. */
+void ris_draw_set_mandible(ris_draw *draw, bool shown);
 /* Which muscle a picture of width x height shows at each pixel (muscle index, UINT32_MAX = none), of the layers and
  * muscles that are shown; bones hide, the skin does not. By the host, at the last tick of sim (width x height). */
 ris_result ris_draw_muscle_map(ris_draw *draw, const ris_sim *sim, const ris_camera *camera, uint32_t width,
