@@ -25,8 +25,8 @@ enum { LIP_UPPER = 1, LIP_LOWER = 2 };
 typedef struct touch {
     uint32_t fiber, segment;
     ris_vec3 local; /* y = +-0.5: the muscle surface on the node's side */
-    ris_vec3 at;    /* the point of the sheet */
-    float distance; /* to the sheet, mm */
+    ris_vec3 at;    /* the point of the sheet; of the surface in the kaehler tissue */
+    float distance; /* to it, mm */
     float depth;    /* of the sheet below the skin there, mm */
     float facing;   /* n_s . n_d */
     float above;    /* n_s . up of the segment */
@@ -61,14 +61,16 @@ static touch meet_segment(const binder *b, uint32_t m, uint32_t fiber, uint32_t 
     const ris_vec3 x = v4_xyz(model->rest_position[node]), rel = v3_sub(x, segment->origin);
     t.local.x = f_clamp(v3_dot(rel, segment->along) / segment->size.x, -0.5f, 0.5f);
     t.local.z = f_clamp(v3_dot(rel, segment->wide) / segment->size.z, -0.5f, 0.5f);
-    t.local.y = v3_dot(rel, segment->up) < 0.0f ? -0.5f : 0.5f;
-    if (b->bake->head->tissue.model != RIS_TISSUE_KAEHLER) { /* a lip goes round the muscle: no jump */
-        t.local.y = f_clamp(v3_dot(rel, segment->up) / segment->size.y, -0.5f, 0.5f);
+    const float up = v3_dot(rel, segment->up) / segment->size.y;
+    t.local.y = f_clamp(up, -0.5f, 0.5f);
+    t.at = v3_mad(segment->origin, t.local.x * segment->size.x, segment->along);
+    t.at = v3_mad(t.at, t.local.z * segment->size.z, segment->wide);
+    if (b->bake->head->tissue.model == RIS_TISSUE_KAEHLER) { /* KA-42: the surface, not the sheet inside it */
+        const bool inside = fabsf(up) < 0.5f && fabsf(t.local.x) < 0.5f && fabsf(t.local.z) < 0.5f;
+        t.local.y = !inside ? t.local.y : up < 0.0f ? -0.5f : 0.5f;
+        t.at = v3_mad(t.at, t.local.y * segment->size.y, segment->up);
     }
-    ris_vec3 on_sheet = v3_mad(segment->origin, t.local.x * segment->size.x, segment->along);
-    on_sheet = v3_mad(on_sheet, t.local.z * segment->size.z, segment->wide);
-    const ris_vec3 d = v3_sub(x, on_sheet);
-    t.at = on_sheet;
+    const ris_vec3 d = v3_sub(x, t.at);
     t.distance = v3_length(d);
     t.facing = v3_dot(v3_unit_or(d, segment->up), v4_xyz(model->rest_normal[node]));
     const float near_depth = 0.5f * (depth[0] + depth[1]),
