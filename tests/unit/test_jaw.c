@@ -243,9 +243,10 @@ static void joint_is_anatomical(void **state)
 static void literal_jaw_only_turns(void **state)
 {
     (void)state;
-    ris_model model = {.head = &head, .push = {.flags = RIS_TISSUE_FLAG_KAEHLER}};
+    ris_vec3 none[1] = {{0}};
+    ris_model model = {.head = &head, .push = {.flags = RIS_TISSUE_FLAG_KAEHLER}, .fiber_point = none};
     float pose[32] = {0};
-    ris_rig rig = {.model = &model};
+    ris_rig rig = {.model = &model, .p = none};
     pose[RIS__JAW_OPEN] = 1;
     ris__jaw_pose(&rig, pose);
     const ris_rigid turn =
