@@ -4,6 +4,7 @@
 #include "player.h"
 #include "render_out.h"
 #include "sheet.h"
+#include "risorius/draw.h"
 #include "studio.h"
 
 #include <math.h>
@@ -15,7 +16,7 @@
 typedef struct render_args {
     const char *head, *clip, *pose, *at, *size, *fps_text, *view, *contact, *layers;
     cli_list out;
-    bool wireframe;
+    bool wireframe, labels;
 } render_args;
 
 /* All a rendering needs; zeroed, then filled by open_render, freed by close_render in any state. */
@@ -106,8 +107,12 @@ static ris_result check_args(render_job *render, ris_error *err)
         r = studio_views_parse(args->view ? args->view : "front", &render->views, err);
     }
     render->look.wireframe = args->wireframe;
+    render->look.labels = args->labels;
     if (!r && args->layers) {
         r = layers_parse(args->layers, &render->look.layers, err);
+    }
+    if (!r && args->labels && (render->look.layers & ~(uint32_t)RIS_LAYER_SKIN) == 0) {
+        r = ris_fail(err, RIS_ERROR_USAGE, "--labels names what --layers shows beside the skin");
     }
     render->at_s = -1;
     if (!r && args->at) {
@@ -305,6 +310,7 @@ static ris_result run(ris_cli *cli, int argc, char **argv, ris_error *err)
         {"view", 0, "LIST", "front, 34, profile, 34.R, profile.R; several stand side by side (front)", NULL,
          &args.view, NULL},
         {"layers", 0, "LIST", LAYER_NAMES " (skin)", NULL, &args.layers, NULL},
+        {"labels", 0, NULL, "names and colour scales of the layers", &args.labels, NULL, NULL},
         {"wireframe", 'w', NULL, "draw edges", &args.wireframe, NULL, NULL},
         {0},
     };

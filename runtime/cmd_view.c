@@ -5,6 +5,7 @@
 
 #include "backend.h"
 #include "base/clock.h"
+#include "layers.h"
 #include "orbit.h"
 #include "player.h"
 #include "risorius/draw.h"
@@ -17,8 +18,8 @@
 #define SIDE_MAX 8192     /* pixels */
 
 typedef struct view_args {
-    const char *head, *clip, *pose, *size, *frames_text, *screenshot;
-    uint32_t width, height, frames; /* frames: 0 = until closed */
+    const char *head, *clip, *pose, *size, *frames_text, *screenshot, *layers_text;
+    uint32_t width, height, frames, layers; /* frames: 0 = until closed */
 } view_args;
 
 typedef struct view_state {
@@ -31,6 +32,7 @@ typedef struct view_state {
     ris_window *surface;
     ris_orbit orbit;
     uint32_t width, height; /* of the drawing */
+    uint32_t layers;        /* ris_layer mask */
     double time_s, speed;
     double cursor_x, cursor_y;
     bool playing, wireframe, restart, step, step_back, stale; /* stale: the picture must be drawn again */
@@ -51,6 +53,10 @@ static void look_from(view_state *view, const char *name)
     }
 }
 
+/* Key of each layer, in the order of their bits. */
+static const int layer_keys[RIS_LAYER_COUNT] = {GLFW_KEY_S, GLFW_KEY_M, GLFW_KEY_B,
+                                                GLFW_KEY_P, GLFW_KEY_L, GLFW_KEY_T};
+
 static void on_key(GLFWwindow *window, int key, int scancode, int action, int mods)
 {
     (void)scancode, (void)mods;
@@ -59,6 +65,9 @@ static void on_key(GLFWwindow *window, int key, int scancode, int action, int mo
         return;
     }
     v->stale = true;
+    for (uint32_t bit = 0; bit < RIS_LAYER_COUNT; bit++) {
+        v->layers ^= key == layer_keys[bit] ? 1u << bit : 0u;
+    }
     switch (key) {
     case GLFW_KEY_SPACE: v->playing = !v->playing; break;
     case GLFW_KEY_R: v->restart = true; break;
@@ -265,6 +274,9 @@ static ris_result show(view_state *view, ris_error *err)
     }
     const ris_vec4 *position, *normal;
     if (!r) {
+        r = ris_draw_set_layers(view->draw, view->layers, err); /* what a key has chosen; no layer = skin */
+    }
+    if (!r) {
         r = player_look(&view->player, view->time_s, &position, &normal, err);
     }
     if (!r) {
@@ -347,6 +359,7 @@ static ris_result parse(ris_cli *cli, view_args *args, int argc, char **argv, ri
         {"clip", 'c', "CLIP", "the clip to play", NULL, &args->clip, NULL},
         {"pose", 'p', "POSE", "a pose to hold instead: name=value[,name=value...]", NULL, &args->pose, NULL},
         {"size", 's', "WxH", "size of the window (900x900)", NULL, &args->size, NULL},
+        {"layers", 0, "LIST", LAYER_NAMES " (skin)", NULL, &args->layers_text, NULL},
         {"frames", 0, "N", "quit after N frames of one tick each", NULL, &args->frames_text, NULL},
         {"screenshot", 0, "FILE.png", "write the last picture", NULL, &args->screenshot, NULL},
         {0},
@@ -363,6 +376,10 @@ static ris_result parse(ris_cli *cli, view_args *args, int argc, char **argv, ri
     if (!r) {
         r = cli_size("size", args->size ? args->size : "900x900", &args->width, &args->height, err);
     }
+    args->layers = RIS_LAYER_SKIN;
+    if (!r && args->layers_text) {
+        r = layers_parse(args->layers_text, &args->layers, err);
+    }
     if (!r && args->frames_text) {
         r = cli_count("frames", args->frames_text, 1, 1000000, &args->frames, err);
     }
@@ -376,7 +393,7 @@ static ris_result run(ris_cli *cli, int argc, char **argv, ris_error *err)
     if (r || cli->done) {
         return r;
     }
-    view_state view = {.speed = 1.0};
+    view_state view = {.speed = 1.0, .layers = args.layers};
     r = open_view(&view, cli, &args, err);
     if (!r) {
         r = loop(&view, &args, err);
@@ -396,6 +413,7 @@ const cli_command cmd_view = {
               "middle button    pan (or shift + left)   R      restart\n"
               "wheel            nearer, farther         W      wireframe\n"
               "1, 7, 3          front, 3/4, profile     right  one tick on, left: ten back\n"
-              "up, down         faster, slower          Q      quit\n",
+              "up, down         faster, slower          Q      quit\n"
+              "layers: S skin, M muscles, B bones, P springs, L landmarks, T strain\n",
     .run = run,
 };

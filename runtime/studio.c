@@ -31,11 +31,12 @@ ris_result studio_views_parse(const char *text, studio_views *out, ris_error *er
 }
 
 #ifdef RISORIUS_VULKAN
-#include "risorius/draw.h"
+#include "annotate.h"
 
 struct ris_studio {
     ris_draw *draw;
     ris_camera camera[STUDIO_VIEW_CAPACITY];
+    studio_look look;
     uint32_t view_count, width, height; /* of one view */
     uint8_t *view, *picture;            /* one view, and all side by side (the same when there is one) */
 };
@@ -49,6 +50,7 @@ ris_result studio_create(const ris_backend *backend, const studio_views *views, 
         return ris_fail(err, RIS_ERROR_MEMORY, "out of memory for a picture");
     }
     ris_result r = RIS_OK;
+    s->look = *look;
     s->view_count = views->count;
     s->width = width;
     s->height = height;
@@ -101,6 +103,10 @@ ris_result studio_shoot(ris_studio *studio, ris_sim *sim, const ris_vec4 *positi
                            : ris_draw_frame(studio->draw, sim, &studio->camera[i], err);
         if (!r) {
             r = ris_draw_read(studio->draw, studio->view, err);
+        }
+        if (!r && studio->look.labels) {
+            r = annotate_picture(studio->draw, sim, &studio->camera[i], position, studio->look.layers,
+                                 studio->view, studio->width, studio->height, err);
         }
         if (r) {
             return r;

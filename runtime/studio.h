@@ -18,6 +18,7 @@ ris_result studio_views_parse(const char *text, studio_views *out, ris_error *er
 typedef struct studio_look {
     bool wireframe;
     uint32_t layers; /* of risorius/draw.h; 0 = skin */
+    bool labels;     /* names of what the layers show, and their colour scales */
 } studio_look;
 
 /* width and height of one view; the picture is count x width wide. backend has a device. */

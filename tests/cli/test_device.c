@@ -94,8 +94,13 @@ static void a_pose_gives_a_picture(void **state)
 static void layers_give_other_pictures(void **state)
 {
     (void)state;
-    static const char *const layers[] = {"skin", "muscles,skull", "skin,muscles,skull,springs,landmarks",
-                                         "strain"};
+    static const char *const layers[] = {"skin",
+                                         "muscles,skull",
+                                         "skin,muscles,skull,springs,landmarks",
+                                         "strain",
+                                         "strain --labels",
+                                         "landmarks,strain --labels",
+                                         "muscles --labels"};
     picture before = {0};
     for (size_t i = 0; i < sizeof layers / sizeof layers[0]; i++) {
         char line[1024];

@@ -114,6 +114,8 @@ static void absurd_numbers_are_usage_errors(void **state)
     expect("render " HEAD " --pose jaw.open=1 -o x.png --layers skin,mucles", 2, "muscles");
     expect("render " HEAD " --pose jaw.open=1 -o x.png --layers skin,", 2, "--layers");
     expect("render " HEAD " --pose jaw.open=1 -o x.png --layers ''", 2, "--layers");
+    expect("render " HEAD " --pose jaw.open=1 -o x.png --labels", 2, "--layers");
+    expect("render " HEAD " --pose jaw.open=1 -o x.png --labels --layers skin", 2, "--layers");
     expect("bench " HEAD " --repeat 0", 2, "--repeat");
 }
 

@@ -167,6 +167,77 @@ static void in_place_equals_uploaded(void **state)
     ris_draw_destroy(draw);
 }
 
+/* Pixels where the map of muscles and a picture of muscles alone disagree: flesh is red, the backdrop is not. */
+static uint32_t disagreements(const uint32_t *map, const uint8_t *pixels)
+{
+    uint32_t different = 0;
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        const bool red = pixels[4 * i] > pixels[4 * i + 2] + 12;
+        different += red != (map[i] != UINT32_MAX);
+    }
+    return different;
+}
+
+static void the_map_is_the_picture(void **state)
+{
+    (void)state;
+    static uint8_t pixels[BYTES];
+    static uint32_t map[WIDTH * HEIGHT];
+    ris_error err = {0};
+    ris_camera camera;
+    ris_draw *draw = open_draw(scene);
+    ris_sim *sim = hold(scene, "zygomaticus_major=1,jaw.open=1,head.yaw=10", NULL);
+    uint32_t seen = 0;
+    assert_true(ris_camera_named(scene, "34.R", &camera));
+    assert_int_equal(ris_draw_muscle_map(draw, sim, &camera, WIDTH, HEIGHT, map, &err), RIS_ERROR_USAGE);
+    GOOD(ris_draw_set_layers(draw, RIS_LAYER_MUSCLES, &err));
+    picture(draw, sim, "34.R", pixels);
+    GOOD(ris_draw_muscle_map(draw, sim, &camera, WIDTH, HEIGHT, map, &err));
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        seen += map[i] != UINT32_MAX;
+        assert_true(map[i] == UINT32_MAX || map[i] < scene->muscle_count);
+    }
+    assert_true(seen > 1000);
+    assert_true(disagreements(map, pixels) < seen / 8); /* edges, and white tendons */
+    picture(draw, sim, "34", pixels);
+    assert_true(disagreements(map, pixels) > seen / 3); /* the control: another view */
+    /* one muscle alone is the only one on the map */
+    bool *only = calloc(scene->muscle_count, sizeof *only);
+    assert_non_null(only);
+    only[1] = true;
+    ris_draw_set_muscles(draw, only);
+    GOOD(ris_draw_muscle_map(draw, sim, &camera, WIDTH, HEIGHT, map, &err));
+    seen = 0;
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        seen += map[i] == 1;
+        assert_true(map[i] == 1 || map[i] == UINT32_MAX);
+    }
+    assert_true(seen > 100);
+    free(only);
+    ris_sim_destroy(sim);
+    ris_draw_destroy(draw);
+}
+
+/* What the skin alone looks like does not depend on the layers that were shown before. */
+static void layers_leave_no_trace(void **state)
+{
+    (void)state;
+    static uint8_t before[BYTES], after[BYTES];
+    ris_error err = {0};
+    ris_draw *draw = open_draw(head);
+    ris_sim *sim = hold(head, "jaw.open=0.5", device);
+    picture(draw, sim, "front", before);
+    GOOD(ris_draw_set_layers(draw, (1u << RIS_LAYER_COUNT) - 1, &err));
+    picture(draw, sim, "front", after);
+    assert_memory_not_equal(before, after, BYTES);
+    assert_int_equal(ris_draw_set_layers(draw, 1u << RIS_LAYER_COUNT, &err), RIS_ERROR_USAGE);
+    GOOD(ris_draw_set_layers(draw, 0, &err));
+    picture(draw, sim, "front", after);
+    assert_memory_equal(before, after, BYTES);
+    ris_sim_destroy(sim);
+    ris_draw_destroy(draw);
+}
+
 static void resize_and_repeat(void **state)
 {
     (void)state;
@@ -200,6 +271,8 @@ int main(void)
         cmocka_unit_test(golden_frames),
         cmocka_unit_test(golden_controls),
         cmocka_unit_test(in_place_equals_uploaded),
+        cmocka_unit_test(the_map_is_the_picture),
+        cmocka_unit_test(layers_leave_no_trace),
         cmocka_unit_test(resize_and_repeat),
     };
     ris_error err = {0};

@@ -113,7 +113,8 @@ static void close_window(Display *display, Window window)
 static bool use_window(Display *display, Window window, pid_t pid)
 {
     static const int sizes[][2] = {{300, 200}, {1, 1}, {90, 400}, {257, 129}, {160, 160}};
-    static const KeySym keys[] = {XK_w, XK_space, XK_Right, XK_Left, XK_3, XK_7, XK_1, XK_r, XK_w, XK_space};
+    static const KeySym keys[] = {XK_w,     XK_space, XK_Right, XK_Left, XK_3, XK_7, XK_1, XK_r, XK_w,
+                                  XK_space, XK_m,     XK_b,     XK_l,    XK_s, XK_p, XK_t, XK_s, XK_m};
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
         XResizeWindow(display, window, (unsigned)sizes[i][0], (unsigned)sizes[i][1]);
         XSync(display, False);
