@@ -15,7 +15,9 @@
 #define STRETCHES 0.88f     /* outer part of a column that stretches; the rest is as rigid as the ledge */
 #define PRESS_MM 0.15f      /* closed margins press into each other: the drawn surface rounds their edges */
 #define LEDGE_KEEPS 0.6f    /* share of the ledge's turn beyond its inner corner */
-#define LINING_RINGS 1
+#define LINING_FOLLOWS                                                                                       \
+    0.25f /* share of a closing lid: farther and it would show its folds, less and it stands in the cornea */
+#define LINING_RINGS 2
 #define NO_RING INT32_MAX
 
 enum { KIND_NONE, KIND_UPPER = 1, KIND_LOWER = 2, KIND_CORNER = 3 };
@@ -361,8 +363,9 @@ static void weigh(const lid_bake *b, uint32_t i)
     node->lining = b->ring[i] < 0;
     node->weight_close = node->upper ? skin * skin * skin : rest * rest * (3.0f - 2.0f * rest);
     node->weight_open = node->upper ? rest * (1.5f - 0.5f * rest) : node->weight_close;
-    if (node->lining) { /* inside the ball: makes way when the lid opens, stays there when it closes */
+    if (node->lining) { /* inside the ball: makes way when the lid opens, goes half way with it when it closes */
         node->weight_open = 1.0f;
+        node->weight_close = LINING_FOLLOWS * f_min(2.0f * node->share, 1.0f);
     }
     if (b->ring[i] >= 0 &&
         b->ring[i] < b->margin) { /* its inner edge keeps off the eye, towards the corners all of it */
@@ -431,7 +434,7 @@ static void free_lid_bake(lid_bake *b)
     free(b->node);
 }
 
-/* A node of the lining hangs on the nearest node of the lid's inner edge. */
+/* The first ring of the lining hangs on the nearest node of the lid's inner edge; the next one has to itself. */
 static void hang_lining(const lid_bake *b, uint32_t from, uint32_t to, int32_t ring)
 {
     if (b->ring[from] != ring || b->ring[to] != ring - 1) {
@@ -482,6 +485,11 @@ static ris_result bake_eye(ris_bake *bake, uint8_t eye, ris_error *err)
         limit_columns(&b, b.margin, b.margin + 1, last, 0.0f);
         limit_columns(&b, 0, 0, b.margin - 1, LEDGE_KEEPS);
         finish_nodes(&b);
+        for (uint32_t i = 0; i < b.model->node_count; ++i) {
+            if (b.ring[i] < 0) {
+                b.node[i].facing[0] = b.node[i].facing[1] = i;
+            }
+        }
         each_edge(&b, hang_lining, 0);
         keep_nodes(&b);
     }

@@ -78,7 +78,7 @@ static float node_turn(const lid_state *s, const ris_lid_node *lid)
         return up * (up < 0.0f ? lid->weight_open : lid->weight_close);
     }
     const float open = s->raise * (lid->share * (2.0f - lid->share)) * lid->weight_open -
-                       s->sink * lid->share * lid->weight_close;
+                       s->sink * (lid->share * (0.5f + 0.5f * lid->share)) * lid->weight_close;
     const float shut = (lower_turn(s, lid->lower_share) - lid->close_rad) * lid->weight_close;
     return open + s->closed * (shut - open);
 }
@@ -104,6 +104,13 @@ static ris_vec3 clear_eye(const lid_state *s, const ris_lid_eye *eye, const ris_
     return v3_scale(p, f_max(r + bulge, now + gap) / r);
 }
 
+/* The lining lies inside the eye, and goes no deeper when the cornea comes by. */
+static ris_vec3 clear_lining(const lid_state *s, const ris_lid_eye *eye, const ris_lid_node *lid, ris_vec3 p)
+{
+    const float r = v3_length(p), now = ris__eye_surface(eye, v3_scale(p, 1.0f / r), s->gaze);
+    return v3_scale(p, f_max(r, now + lid->gap_mm) / r);
+}
+
 /* Place of the node relative to the eye's centre. own: what muscles and jaw move it by. */
 static ris_vec3 place(const lid_state *s, const ris_rig *rig, const ris_lid_node *lid, uint32_t k,
                       ris_vec3 rest, double cosine, double sine)
@@ -120,7 +127,7 @@ static ris_vec3 place(const lid_state *s, const ris_rig *rig, const ris_lid_node
     const ris_vec3 facing =
         v3_lerp(rig->lid_move[lid->facing[0]], rig->lid_move[lid->facing[1]], lid->facing_share);
     p = v3_add(p, v3_lerp(rig->lid_move[k], facing, lid->lining ? 1.0f : shut));
-    return lid->lining ? p : clear_eye(s, eye, lid, rest, p);
+    return lid->lining ? clear_lining(s, eye, lid, p) : clear_eye(s, eye, lid, rest, p);
 }
 
 void ris__lid_pose(ris_rig *rig, const float *pose)
