@@ -3,6 +3,7 @@
  * keep their corners, open wide, follow the gaze, mirror.
  * Rings of the lids are found here from regions and faces, not from the bake. */
 #include "loaded_head.h"
+#include "risorius/timeline.h"
 
 #define MARGIN_RING 2 /* from the lining of the socket outwards */
 #define GAP_MM 0.3f
@@ -287,6 +288,34 @@ static void wide_and_gaze(void **state)
     assert_in_range((int)(margin_lift(LOWER) * 100.0f), 80, 220);
 }
 
+/* Closed lids stay closed, and off the eye, whatever the muscles around them do, alone and all at once. */
+static void muscles_do_not_open_closed_lids(void **state)
+{
+    (void)state;
+    static const char *const poses[] = {
+        "lid.upper=1,orbicularis_oculi_palpebral=1",
+        "lid.upper=1,orbicularis_oculi_orbital=1",
+        "lid.upper=1,frontalis_inner=1,frontalis_outer=1",
+        "lid.upper=1,corrugator_supercilii=1,depressor_supercilii=1,procerus=1",
+        "lid.upper=1,zygomaticus_major=1,levator_labii_superioris=1",
+        "lid.upper=1,frontalis_inner=1,frontalis_outer=1,corrugator_supercilii=1,zygomaticus_major=1,"
+        "orbicularis_oculi_orbital=1,orbicularis_oculi_palpebral=1",
+        "lid.upper=1,eye.pitch=-25,eye.yaw=20,orbicularis_oculi_palpebral=1,frontalis_outer=1",
+        "lid.upper=1,eye.pitch=25,lid.lower=0.5,orbicularis_oculi_palpebral=1,orbicularis_oculi_orbital=1",
+        "lid.upper=1,levator_palpebrae_superioris=1,frontalis_inner=1"};
+    for (size_t k = 0; k < sizeof poses / sizeof poses[0]; ++k) {
+        need(ris_pose_parse(model, poses[k], pose, &err));
+        settle();
+        print_message("%s: gap %.3f mm\n", poses[k], (double)widest_gap());
+        assert_true(widest_gap() < GAP_MM);
+        assert_outside();
+    }
+    need(ris_pose_parse(model, "orbicularis_oculi_palpebral=1,orbicularis_oculi_orbital=1", pose, &err));
+    settle();
+    assert_true(widest_gap() > 1.0f); /* control: muscles alone do not close this eye */
+    assert_outside();
+}
+
 /* AU5: the levator moves the lid as the channel does, one eye at a time; a closed lid stays closed. */
 static void the_levator_lifts_the_lid(void **state)
 {
@@ -371,9 +400,13 @@ static void blink(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(closed_lids_meet), cmocka_unit_test(lids_stay_off_the_eye),
-        cmocka_unit_test(wide_and_gaze),    cmocka_unit_test(the_levator_lifts_the_lid),
-        cmocka_unit_test(one_eye_mirrors),  cmocka_unit_test(blink),
+        cmocka_unit_test(closed_lids_meet),
+        cmocka_unit_test(lids_stay_off_the_eye),
+        cmocka_unit_test(wide_and_gaze),
+        cmocka_unit_test(muscles_do_not_open_closed_lids),
+        cmocka_unit_test(the_levator_lifts_the_lid),
+        cmocka_unit_test(one_eye_mirrors),
+        cmocka_unit_test(blink),
     };
     return cmocka_run_group_tests(tests, open_head, close_head);
 }
