@@ -11,12 +11,20 @@
 
 ris_tissue_def ris_default_tissue(void)
 {
-    /* normal: the thesis's pair 2 x 30, less on the cheek; tangential: a decay length of 5..8 mm. Lips
-     * are full of muscle to the rim, and their small triangles would rather stay as they are. */
+    /* normal: the thesis's pair 2 x 30, less on the cheek; tangential: a decay length of 5..8 mm. The
+     * forehead glides on its bone. Lips are full of muscle to the rim, and their small triangles would rather stay as they are. */
     static const ris_anchor_region anchors[] = {
-        {"bone", 60, 45},   {"cheek", 24, 20},           {"lips", 30, 10},          {"lids", 60, 20},
-        {"nose", 60, 45},   {"mouth_cavity", 30, 30},    {"inner_lip_rim", 30, 10}, {"muscle", 60, 90},
-        {"lips", 300, 300}, {"inner_lip_rim", 150, 150},
+        {"bone", 60, 45},
+        {"cheek", 24, 20},
+        {"lips", 30, 10},
+        {"lids", 60, 20},
+        {"nose", 60, 45},
+        {"mouth_cavity", 30, 30},
+        {"inner_lip_rim", 30, 10},
+        {"forehead", 90, 25},
+        {"muscle", 60, 90},
+        {"lips", 300, 300},
+        {"inner_lip_rim", 150, 150},
     };
     ris_tissue_def tissue = {
         .model = RIS_TISSUE_RISORIUS,

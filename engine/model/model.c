@@ -74,7 +74,8 @@ ris_result ris_model_create(const ris_head *head, ris_model **out, ris_error *er
         {ris__bake_lining, false},    {ris__bake_grids, true},    {ris__bake_muscles, true},
         {ris__bake_groups, true},     {ris__bake_network, true},  {ris__bake_ties, true},
         {ris__bake_fat, true},        {ris__bake_bindings, true}, {ris__bake_anchors, false},
-        {ris__bake_lids, false},      {ris__bake_push, false},    {ris__bake_channels, false},
+        {ris__bake_slide, false},     {ris__bake_lids, false},    {ris__bake_push, false},
+        {ris__bake_channels, false},
     };
     *out = NULL;
     ris_result result = check_head(head, err);
@@ -161,6 +162,7 @@ void ris_model_destroy(ris_model *model)
     free(model->lid);
     free(model->lining);
     free(model->fat);
+    free(model->slide);
     if (model->owned_head) {
         ris_head_finish(model->owned_head);
         free(model->owned_head);

@@ -58,6 +58,8 @@ ris_result ris__refine_grid(const ris_bake *bake, uint32_t m, ris_bake_grid *gri
 ris_result ris__bake_muscles(ris_bake *bake, ris_error *err);
 /* KA-28: constraint groups of muscle ends. */
 ris_result ris__bake_groups(ris_bake *bake, ris_error *err);
+/* Skin that slides over the bone close below it. */
+ris_result ris__bake_slide(ris_bake *bake, ris_error *err);
 /* KA-47: nodes over muscles that gather fat. */
 ris_result ris__bake_fat(ris_bake *bake, ris_error *err);
 /* Which ring of a lip a muscle of the lips ties to the bone. */

@@ -13,6 +13,8 @@
 #include "model/model_impl.h"
 #include "model/vec3.h"
 
+#define BONE_MM 80.0f /* radius of forehead and brow, about */
+
 static ris_vec3 attached_point(const ris_rig *rig, const ris_muscle *muscle, const ris_attach *attach)
 {
     const ris_model *model = rig->model;
@@ -83,7 +85,10 @@ static ris_vec3 muscle_move(const ris_rig *rig, uint32_t i)
     for (uint32_t b = model->binding_start[i]; b < model->binding_start[i + 1]; ++b) {
         add_binding(rig, &model->binding[b], &sum, &total);
     }
-    return v3_scale(sum, 1.0f / f_max(total, 1.0f));
+    const ris_vec3 move = v3_scale(sum, 1.0f / f_max(total, 1.0f)), normal = v4_xyz(model->rest_normal[i]);
+    const float round = 0.5f * v3_dot(move, move) / BONE_MM; /* the bone itself curves away so far */
+    const float inward = f_max(-v3_dot(move, normal) - round, 0.0f);
+    return v3_mad(move, model->slide[i] * inward, normal); /* not into the bone */
 }
 
 /* KA-47: fat that a muscle gathers rises. */

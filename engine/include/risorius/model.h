@@ -159,6 +159,7 @@ typedef struct ris_model {
     uint32_t lid_count; /* 0 without eyes, lids or in the kaehler tissue */
     ris_lid_node *lid;  /* ascending node (lid_count) */
     ris_lid_eye lid_eye[2];
+    float *slide;       /* 0..1: how far muscles move the node along the bone only (node_count) */
     uint32_t fat_count; /* 0 in the kaehler tissue */
     ris_fat_node *fat;
     uint32_t lining_count; /* 0 without lips, mouth_cavity or in the kaehler tissue */
