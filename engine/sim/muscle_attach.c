@@ -86,6 +86,9 @@ static ris_vec3 muscle_move(const ris_rig *rig, uint32_t i)
         add_binding(rig, &model->binding[b], &sum, &total);
     }
     const ris_vec3 move = v3_scale(sum, 1.0f / f_max(total, 1.0f)), normal = v4_xyz(model->rest_normal[i]);
+    if (!model->slide) {
+        return move;
+    }
     const float round = 0.5f * v3_dot(move, move) / BONE_MM; /* the bone itself curves away so far */
     const float inward = f_max(-v3_dot(move, normal) - round, 0.0f);
     return v3_mad(move, model->slide[i] * inward, normal); /* not into the bone */
