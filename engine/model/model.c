@@ -70,12 +70,26 @@ ris_result ris_model_create(const ris_head *head, ris_model **out, ris_error *er
         ris_result (*build)(ris_bake *, ris_error *);
         bool muscles; /* part of rebuilding all muscles after an edit (KA-43) */
     } builders[] = {
-        {ris__bake_triangles, false}, {ris__bake_mass, false},    {ris__bake_springs, false},
-        {ris__bake_lining, false},    {ris__bake_grids, true},    {ris__bake_muscles, true},
-        {ris__bake_groups, true},     {ris__bake_network, true},  {ris__bake_ties, true},
-        {ris__bake_fat, true},        {ris__bake_bindings, true}, {ris__bake_anchors, false},
-        {ris__bake_slide, false},     {ris__bake_lids, false},    {ris__bake_push, false},
+        /* clang-format off */
+        {ris__bake_triangles, false},
+        {ris__bake_mass, false},
+        {ris__bake_springs, false},
+        {ris__bake_jaw_slide, false},
+        {ris__bake_lining, false},
+        {ris__bake_grids, true},
+        {ris__bake_muscles, true},
+        {ris__bake_groups, true},
+        {ris__bake_network, true},
+        {ris__bake_ties, true},
+        {ris__bake_fat, true},
+        {ris__bake_bindings, true},
+        {ris__bake_anchors, false},
+        {ris__bake_slide, false},
+        {ris__bake_lids, false},
+        {ris__bake_contact, false},
+        {ris__bake_push, false},
         {ris__bake_channels, false},
+        /* clang-format on */
     };
     *out = NULL;
     ris_result result = check_head(head, err);
@@ -159,6 +173,11 @@ void ris_model_destroy(ris_model *model)
     free(model->network_node);
     free(model->network_spring);
     free(model->bone_anchor);
+    free(model->jaw_slide_weight);
+    free(model->contact_grid);
+    free(model->contact_node);
+    free(model->contact_touch);
+    free(model->contact_other);
     free(model->lid);
     free(model->lining);
     free(model->fat);

@@ -38,6 +38,8 @@ ris_result ris__bake_triangles(ris_bake *bake, ris_error *err);
 ris_result ris__bake_mass(ris_bake *bake, ris_error *err);
 /* KA-10, KA-11 and the bending umbrella: spring_start, half_spring. */
 ris_result ris__bake_springs(ris_bake *bake, ris_error *err);
+/* jaw_slide_weight. */
+ris_result ris__bake_jaw_slide(ris_bake *bake, ris_error *err);
 /* KA-38, KA-39: grids below the skin, refined. */
 ris_result ris__bake_grids(ris_bake *bake, ris_error *err);
 /* One grid of rows x columns without content. */
@@ -80,6 +82,8 @@ ris_vec3 ris__anchor_at_rest(const ris_model *model, uint32_t node);
 ris_result ris__bake_anchors(ris_bake *bake, ris_error *err);
 /* Nodes of the eyelids with their weights and closing angles; thinner, firmly held skin there. */
 ris_result ris__bake_lids(ris_bake *bake, ris_error *err);
+/* What the contact stage needs: grids, limits, pairs of the lips. After lids (eyes) and before push is done. */
+ris_result ris__bake_contact(ris_bake *bake, ris_error *err);
 /* Constants of the stages and the stable time step (docs/physics.md). */
 ris_result ris__bake_push(ris_bake *bake, ris_error *err);
 /* KA-48: the channel table. */
@@ -95,6 +99,11 @@ ris_vec3 ris__segment_point(const ris_segment *segment, ris_vec3 p0, ris_vec3 p1
 
 /* Distance from the centre to the surface of an eye in a unit direction, looking along unit gaze, mm. */
 float ris__eye_surface(const ris_lid_eye *eye, ris_vec3 direction, ris_vec3 gaze);
+
+/* Distance of a contact node from the other lip, mm, negative through it; the direction away from it (not normalised) and how
+ * much of it is near (0 = nothing, then the distance means nothing). position and normal (node_count). */
+float ris__lip_distance(const ris_model *model, const ris_vec4 *position, const ris_vec4 *normal,
+                        const ris_contact_node *contact, ris_vec3 *out_away, float *out_weight);
 
 /* Mean over the fibres of control point `point` (KA-27). */
 ris_vec3 ris__muscle_point(const ris_model *model, const ris_muscle *muscle, const ris_vec3 *points,

@@ -41,17 +41,20 @@ ris_compare_def ris_default_compare_def(ris_sim *a, ris_sim *b)
 }
 
 /* States that a stage writes; the first is the one measured in mm. Returns how many. */
-static uint32_t outputs(ris_stage stage, ris_state out[3])
+static uint32_t outputs(ris_stage stage, ris_state out[4])
 {
     switch (stage) {
     case RIS_STAGE_ANCHOR_SHIFT: out[0] = RIS_STATE_POSITION; return 1;
     case RIS_STAGE_BEND: out[0] = RIS_STATE_BEND; return 1;
     case RIS_STAGE_SPRING_FORCE: out[0] = RIS_STATE_FORCE; return 1;
     case RIS_STAGE_VERLET:
+    case RIS_STAGE_CONTACT:
         out[0] = RIS_STATE_POSITION;
         out[1] = RIS_STATE_VELOCITY_HALF;
         out[2] = RIS_STATE_VELOCITY_PREV;
-        return 3;
+        out[3] = RIS_STATE_FREE;
+        return 4;
+    case RIS_STAGE_LIP_NORMAL:
     case RIS_STAGE_NORMAL:
     case RIS_STAGE_COUNT: break;
     }
@@ -186,7 +189,7 @@ static ris_result compare_stage(run *r, ris_stage stage, const place *at, ris_er
     ris_compare_stage *stats = at->probe ? &r->report->step[stage] : &r->report->clip[stage];
     double *sum = at->probe ? &r->step_sum[stage] : &r->clip_sum[stage];
     uint64_t *nodes = at->probe ? &r->step_nodes[stage] : &r->clip_nodes[stage];
-    ris_state state[3];
+    ris_state state[4];
     const uint32_t count = outputs(stage, state);
     for (uint32_t k = 0; k < count; k++) {
         uint32_t vertex = 0;
@@ -222,23 +225,21 @@ static ris_result both_stage(run *r, ris_stage stage, const ris_anchor_frame *an
 static ris_result lockstep(run *r, const ris_anchor_frame *anchors, uint32_t tick, uint32_t substeps,
                            bool is_probe, ris_error *err)
 {
-    const bool bend = !(r->model->push.flags & RIS_TISSUE_FLAG_KAEHLER);
     place at = {.tick = tick, .probe = is_probe};
-    ris_result result = both_stage(r, RIS_STAGE_ANCHOR_SHIFT, anchors, &at, err);
-    for (uint32_t k = 0; k < substeps && result == RIS_OK; k++) {
-        at.substep = k;
-        if (bend) {
-            result = both_stage(r, RIS_STAGE_BEND, NULL, &at, err);
-        }
-        if (result == RIS_OK) {
-            result = both_stage(r, RIS_STAGE_SPRING_FORCE, NULL, &at, err);
-        }
-        if (result == RIS_OK) {
-            result = both_stage(r, RIS_STAGE_VERLET, NULL, &at, err);
-        }
+    uint8_t *list = malloc(5 * (size_t)substeps + 2);
+    if (!list) {
+        return ris_fail(err, RIS_ERROR_MEMORY, "no memory for the stages of %u substeps", substeps);
     }
-    at.substep = 0;
-    return result == RIS_OK ? both_stage(r, RIS_STAGE_NORMAL, NULL, &at, err) : result;
+    const uint32_t count = ris__sim_stages(r->model, substeps, list);
+    uint32_t steps = 0; /* verlets before this stage */
+    ris_result result = RIS_OK;
+    for (uint32_t k = 0; k < count && result == RIS_OK; k++) {
+        at.substep = list[k] == RIS_STAGE_NORMAL ? 0 : list[k] > RIS_STAGE_VERLET ? steps - 1 : steps;
+        steps += list[k] == RIS_STAGE_VERLET;
+        result = both_stage(r, (ris_stage)list[k], k == 0 ? anchors : NULL, &at, err);
+    }
+    free(list);
+    return result;
 }
 
 /* One step of every stage from a's state on both sides; then both states are put back. */

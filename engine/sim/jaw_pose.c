@@ -131,6 +131,8 @@ static void pose_jaw(ris_rig *rig, const float *pose)
     rig->jaw = rig->model->push.flags & RIS_TISSUE_FLAG_KAEHLER
                    ? turn_and_shift(&head->jaw, open, forward, side)
                    : ris__jaw_path(&head->jaw, &head->guidance, open, forward, side);
+    rig->slides = forward != 0.0f || side != 0.0f;
+    rig->jaw_open = rig->slides ? ris__jaw_path(&head->jaw, &head->guidance, open, 0.0f, 0.0f) : rig->jaw;
 }
 
 void ris__jaw_pose(ris_rig *rig, const float *pose)

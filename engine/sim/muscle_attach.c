@@ -124,7 +124,13 @@ static void attach_default(ris_rig *rig, uint32_t i)
     ris_vec3 normal = v4_xyz(model->rest_normal[i]);
     ris_vec3 target = v3_add(v4_xyz(model->rest_position[i]), rig->move[i]);
     const float jaw = model->jaw_weight[i];
-    if (!rig->jaw.identity && jaw > 0.0f) {
+    if (rig->slides) {
+        const float slide = model->jaw_slide_weight ? model->jaw_slide_weight[i] : jaw;
+        const ris_vec3 open = ris__rigid_apply(&rig->jaw_open, target);
+        const ris_vec3 slid = v3_sub(ris__rigid_apply(&rig->jaw, target), open);
+        target = v3_mad(v3_lerp(target, open, jaw), slide, slid);
+        normal = v3_unit_or(v3_lerp(normal, ris__rigid_rotate(&rig->jaw, normal), jaw), normal);
+    } else if (!rig->jaw.identity && jaw > 0.0f) {
         target = v3_lerp(target, ris__rigid_apply(&rig->jaw, target), jaw);
         normal = v3_unit_or(v3_lerp(normal, ris__rigid_rotate(&rig->jaw, normal), jaw), normal);
     }

@@ -68,6 +68,8 @@ typedef struct ris_rig {
     uint32_t first_beside; /* channel number of jaw.open */
     /* jaw_pose */
     ris_rigid jaw, eye[2], head;
+    ris_rigid jaw_open; /* the jaw without its slide; equal to jaw when it does not slide */
+    bool slides;
     ris_vec3 *p; /* rest control points, turned with the jaw in the kaehler tissue (fiber_point_count) */
     /* muscle_contract */
     float *contraction; /* c per muscle */
@@ -95,6 +97,8 @@ typedef struct ris_rig {
     ris_tongue tongue;
     /* lid_pose */
     ris_vec3 *lid_move; /* what muscles and jaw move the nodes of the lids by, mm (lid_count) */
+    /* contact_pose */
+    ris_contact_body body[RIS_CONTACT_BODIES];
 } ris_rig;
 
 ris_result ris__rig_init(ris_rig *rig, const ris_model *model, ris_error *err);
@@ -116,6 +120,7 @@ void ris__tongue_pose(ris_rig *rig, const float *pose);
 void ris__tongue_init(ris_tongue *tongue, const ris_head *head);
 /* Where a point of the tongue at rest is now, in the frame of the jaw. */
 ris_vec3 ris__tongue_place(const ris_tongue *tongue, ris_vec3 p);
+void ris__contact_pose(ris_rig *rig);
 
 /* How far each control point turns with the jaw when shown (fiber_point_count). */
 ris_result ris__muscle_jaw_weights(const ris_model *model, float *weight, ris_error *err);

@@ -11,9 +11,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LARGEST_MM 1e5f      /* a node this far out has diverged */
-#define REST_SPEED_MM_S 0.1f /* at rest, docs/physics.md */
-#define REST_TICKS 15        /* 0.25 s */
+#define LARGEST_MM 1e5f         /* a node this far out has diverged */
+#define REST_SPEED_MM_S 0.1f    /* at rest, docs/physics.md */
+#define SUBSTEP_SPEED_MM_S 2.0f /* 4 um a substep */
+#define REST_TICKS 15           /* 0.25 s */
 #define SETTLE_S 20
 
 struct ris_sim {
@@ -28,16 +29,38 @@ struct ris_sim {
 
 const char *ris_stage_name(ris_stage stage)
 {
-    static const char *const names[RIS_STAGE_COUNT] = {"anchor_shift", "bend", "spring_force", "verlet",
-                                                       "normal"};
+    static const char *const names[RIS_STAGE_COUNT] = {"anchor_shift", "bend",    "spring_force", "verlet",
+                                                       "lip_normal",   "contact", "normal"};
     return (unsigned)stage < RIS_STAGE_COUNT ? names[stage] : "?";
 }
 
 const char *ris_state_name(ris_state state)
 {
-    static const char *const names[RIS_STATE_COUNT] = {"position", "velocity_half", "velocity_prev",
-                                                       "force",    "bend",          "normal"};
+    static const char *const names[RIS_STATE_COUNT] = {"position", "velocity_half", "velocity_prev", "force",
+                                                       "bend",     "normal",        "free"};
     return (unsigned)state < RIS_STATE_COUNT ? names[state] : "?";
+}
+
+uint32_t ris__sim_stages(const ris_model *model, uint32_t substeps, uint8_t *list)
+{
+    const bool bend = !(model->push.flags & RIS_TISSUE_FLAG_KAEHLER);
+    uint32_t count = 0;
+    list[count++] = RIS_STAGE_ANCHOR_SHIFT;
+    for (uint32_t k = 0; k < substeps; ++k) {
+        if (bend) {
+            list[count++] = RIS_STAGE_BEND;
+        }
+        list[count++] = RIS_STAGE_SPRING_FORCE;
+        list[count++] = RIS_STAGE_VERLET;
+        if (model->push.lip_node_count > 0) {
+            list[count++] = RIS_STAGE_LIP_NORMAL;
+        }
+        if (model->push.contact_node_count > 0) {
+            list[count++] = RIS_STAGE_CONTACT;
+        }
+    }
+    list[count++] = RIS_STAGE_NORMAL;
+    return count;
 }
 
 ris_result ris__sim_create(const ris_model *model, const ris_sim_impl *impl, void *self,
@@ -96,6 +119,9 @@ ris_result ris_sim_reset(ris_sim *sim, ris_error *err)
     if (result == RIS_OK) {
         result = sim->impl->write(sim->self, RIS_STATE_NORMAL, model->rest_normal, err);
     }
+    if (result == RIS_OK) {
+        result = sim->impl->write(sim->self, RIS_STATE_FREE, model->rest_position, err);
+    }
     memset(sim->scratch, 0, model->node_count * sizeof *sim->scratch);
     for (size_t k = 0; result == RIS_OK && k < sizeof zeroed / sizeof zeroed[0]; ++k) {
         result = sim->impl->write(sim->self, zeroed[k], sim->scratch, err);
@@ -114,6 +140,7 @@ static void run_muscle_stages(ris_sim *sim, const float *pose)
     ris__muscle_attach(&sim->rig);
     ris__lid_pose(&sim->rig, pose);
     ris__tongue_pose(&sim->rig, pose);
+    ris__contact_pose(&sim->rig);
 }
 
 ris_result ris__sim_pose(ris_sim *sim, const float *pose, ris_anchor_frame *out, ris_error *err)
@@ -127,6 +154,7 @@ ris_result ris__sim_pose(ris_sim *sim, const float *pose, ris_anchor_frame *out,
     run_muscle_stages(sim, pose);
     out->point = sim->rig.point;
     out->delta = sim->rig.delta;
+    out->body = sim->rig.body;
     return RIS_OK;
 }
 
@@ -189,39 +217,54 @@ ris_result ris_sim_tick(ris_sim *sim, const float *pose, ris_error *err)
     return result;
 }
 
-/* The fastest node now. */
-static ris_result find_fastest(ris_sim *sim, ris_hold *out, ris_error *err)
+/* Fastest node of the last tick: by the way it made, or by its velocity where that is more than SUBSTEP_SPEED_MM_S.
+ * (A node squeezed between two bodies may keep a velocity that contact undoes within the substep.) Before are the
+ * positions a tick ago; they become the present ones. */
+static ris_result find_fastest(ris_sim *sim, ris_vec4 *before, ris_hold *out, ris_error *err)
 {
-    ris_result result = sim->impl->read(sim->self, RIS_STATE_VELOCITY_HALF, sim->scratch, err);
-    float worst = 0.0f;
-    for (uint32_t i = 0; result == RIS_OK && i < sim->model->node_count; ++i) {
-        const float speed2 = v3_dot(v4_xyz(sim->scratch[i]), v4_xyz(sim->scratch[i]));
-        if (speed2 > worst) {
-            worst = speed2;
+    const uint32_t n = sim->model->node_count;
+    ris_result result = sim->impl->read(sim->self, RIS_STATE_POSITION, sim->scratch, err);
+    out->speed_mm_s = 0.0f;
+    for (uint32_t i = 0; i < n && result == RIS_OK; ++i) {
+        const float way = v3_distance(v4_xyz(sim->scratch[i]), v4_xyz(before[i])) / (float)RIS_TICK_S;
+        before[i] = sim->scratch[i];
+        if (way > out->speed_mm_s) {
+            out->speed_mm_s = way;
             out->vertex = i;
         }
     }
-    out->speed_mm_s = sqrtf(worst);
+    if (result == RIS_OK) {
+        result = sim->impl->read(sim->self, RIS_STATE_VELOCITY_HALF, sim->scratch, err);
+    }
+    for (uint32_t i = 0; i < n && result == RIS_OK; ++i) {
+        const float speed = v3_length(v4_xyz(sim->scratch[i]));
+        if (speed > SUBSTEP_SPEED_MM_S && speed > out->speed_mm_s) {
+            out->speed_mm_s = speed;
+            out->vertex = i;
+        }
+    }
     return result;
 }
 
 ris_result ris_sim_hold(ris_sim *sim, const float *pose, double limit_s, ris_hold *out, ris_error *err)
 {
     uint32_t quiet = 0;
+    ris_vec4 *before = NULL;
     *out = (ris_hold){0};
-    for (uint32_t tick = 1; !out->at_rest && (tick - 0.5) * RIS_TICK_S < limit_s; ++tick) {
-        ris_result result = ris_sim_tick(sim, pose, err);
+    ris_result result =
+        ris__model_alloc(&before, sim->model->node_count, sizeof *before, "the simulation", err);
+    for (uint32_t tick = 1; result == RIS_OK && !out->at_rest && (tick - 0.5) * RIS_TICK_S < limit_s;
+         ++tick) {
+        result = ris_sim_tick(sim, pose, err);
         if (result == RIS_OK) {
-            result = find_fastest(sim, out, err);
-        }
-        if (result != RIS_OK) {
-            return result;
+            result = find_fastest(sim, before, out, err);
         }
         quiet = out->speed_mm_s <= REST_SPEED_MM_S ? quiet + 1 : 0;
-        out->at_rest = quiet >= REST_TICKS;
+        out->at_rest = result == RIS_OK && quiet >= REST_TICKS;
         out->time_s = tick * RIS_TICK_S;
     }
-    return RIS_OK;
+    free(before);
+    return result;
 }
 
 ris_result ris_sim_settle(ris_sim *sim, const float *pose, double *out_time_s, ris_error *err)

@@ -3,15 +3,17 @@
 
 #include "risorius/sim.h"
 
-/* Host results of one tick, inputs of anchor_shift and spring_force; (node_count) each. */
+/* Host results of one tick, inputs of anchor_shift, spring_force and contact; (node_count) each, body
+ * (RIS_CONTACT_BODIES). */
 typedef struct ris_anchor_frame {
     const ris_anchor_point *point;
     const ris_vec4 *delta;
+    const ris_contact_body *body;
 } ris_anchor_frame;
 
 typedef struct ris_sim_impl {
     void (*destroy)(void *self);
-    /* uploads the anchors, runs anchor_shift, substeps x (bend, spring_force, verlet), normal; returns when done */
+    /* uploads the anchors, runs the stages of a tick (ris__sim_stages); returns when done */
     ris_result (*frame)(void *self, const ris_anchor_frame *anchors, uint32_t substeps, ris_sim_times *times,
                         ris_error *err);
     /* runs one stage once on the present state (parity tests); anchors NULL = keep those last uploaded */
@@ -20,6 +22,8 @@ typedef struct ris_sim_impl {
     ris_result (*write)(void *self, ris_state state, const ris_vec4 *in, ris_error *err);
 } ris_sim_impl;
 
+/* The stages of a tick of the model in order into list (room for 5 x substeps + 2); returns how many. */
+uint32_t ris__sim_stages(const ris_model *model, uint32_t substeps, uint8_t *list);
 /* Wraps a backend in the front; takes ownership of self. backend_name is copied. */
 ris_result ris__sim_create(const ris_model *model, const ris_sim_impl *impl, void *self,
                            const char *backend_name, ris_sim **out, ris_error *err);

@@ -37,7 +37,13 @@
 #define RIS_BIND_ANCHOR_PARAM 11 /* ris_anchor_param (node_count) */
 #define RIS_BIND_ANCHOR_POINT 12 /* ris_anchor_point (node_count), written once a frame */
 #define RIS_BIND_ANCHOR_DELTA 13 /* ris_v4 (node_count): change of the anchor since last frame, mm, w 0 */
-#define RIS_BIND_COUNT 14
+#define RIS_BIND_FREE 14         /* ris_v4 (node_count): position before contact, mm; written by verlet, read by contact */
+#define RIS_BIND_CONTACT_NODE 15  /* ris_contact_node (contact_node_count): the nodes that can touch anything */
+#define RIS_BIND_CONTACT_TOUCH 16 /* ris_contact_touch (contact_touch_count), sorted by contact node */
+#define RIS_BIND_CONTACT_OTHER 17 /* ris_uint (contact_pair_count): nodes of the other lip, sorted by contact node */
+#define RIS_BIND_CONTACT_GRID 18  /* ris_v4 (contact_sample_count): xyz unit, away from the body; w distance, mm, negative inside */
+#define RIS_BIND_CONTACT_BODY 19  /* ris_contact_body (RIS_CONTACT_BODIES), written once a frame */
+#define RIS_BIND_COUNT 20
 
 /* One spring seen from one of its nodes. Each spring appears twice. */
 RIS_STRUCT(ris_half_spring) {
@@ -70,6 +76,36 @@ RIS_STRUCT(ris_anchor_point) {
     ris_v4 b;
 } RIS_STRUCT_END(ris_anchor_point);
 
+#define RIS_CONTACT_BODIES 6 /* at most: two eyes, skull, mandible, two rows of teeth */
+
+/* A node that can touch the other lip or a body. */
+RIS_STRUCT(ris_contact_node) {
+    ris_uint node;
+    ris_uint lip_first; /* of its nodes of the other lip, up to lip_end */
+    ris_uint lip_end;
+    ris_float lip_limit_mm; /* least distance from the other lip */
+    ris_uint touch_first;   /* of its bodies, up to touch_end */
+    ris_uint touch_end;
+} RIS_STRUCT_END(ris_contact_node);
+
+/* A body that a node can touch. */
+RIS_STRUCT(ris_contact_touch) {
+    ris_uint body;
+    ris_float limit_mm; /* least distance from it */
+} RIS_STRUCT_END(ris_contact_touch);
+
+/* A rigid body that the skin stays off: its distance grid (x fastest) in its rest frame, and its place this frame. */
+RIS_STRUCT(ris_contact_body) {
+    ris_v4 row_x; /* world -> rest frame, rows of a 3x4 */
+    ris_v4 row_y;
+    ris_v4 row_z;
+    ris_v4 low;      /* xyz: first sample, mm; w: samples per mm */
+    ris_uint count_x; /* samples along each axis; 0 = no body */
+    ris_uint count_y;
+    ris_uint count_z;
+    ris_uint first; /* of its samples in the grid array */
+} RIS_STRUCT_END(ris_contact_body);
+
 #define RIS_TISSUE_FLAG_KAEHLER 1u    /* anchor pair instead of normal + tangential anchor */
 #define RIS_TISSUE_FLAG_CONTINUOUS 2u /* continuous biphasic law */
 
@@ -83,6 +119,9 @@ RIS_STRUCT(ris_sim_push) {
     ris_float switch_stretch;
     ris_float compression;   /* factor on modulus_low when l < r */
     ris_float damping_per_s; /* gamma / m, 1/s */
+    ris_uint contact_node_count;
+    ris_uint lip_node_count; /* the first of the contact nodes: those with a list of the other lip */
+    ris_float lip_radius_mm; /* lips feel each other this far */
 } RIS_STRUCT_END(ris_sim_push);
 
 #ifdef RIS_GLSL

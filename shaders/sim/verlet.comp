@@ -6,6 +6,7 @@
 layout(set = 0, binding = RIS_BIND_POSITION, scalar) buffer position_block { vec4 position[]; };
 layout(set = 0, binding = RIS_BIND_VELOCITY_HALF, scalar) buffer velocity_half_block { vec4 velocity_half[]; };
 layout(set = 0, binding = RIS_BIND_VELOCITY_PREV, scalar) buffer velocity_prev_block { vec4 velocity_prev[]; };
+layout(set = 0, binding = RIS_BIND_FREE, scalar) writeonly buffer free_block { vec4 free_position[]; };
 layout(set = 0, binding = RIS_BIND_FORCE, scalar) readonly buffer force_block { vec4 force[]; };
 
 void main()
@@ -24,5 +25,6 @@ void main()
         velocity_prev[i] = vec4(h, 0.0);
         velocity_half[i] = vec4(u, 0.0);
         position[i] = vec4(x, p.w);
+        free_position[i] = vec4(x, p.w); // for contact, which overwrites position
     }
 }

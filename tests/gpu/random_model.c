@@ -88,6 +88,52 @@ static void fill_springs(ris_model *model, uint32_t *seed)
     model->triangle_count = (t + 2) / 3; /* the ring has room for three times as many */
 }
 
+/* Some nodes feel others as the other lip, all feel some of three bodies. Nothing in the kaehler tissue. */
+static void fill_contact(ris_model *model, uint32_t *seed)
+{
+    const uint32_t n = model->node_count;
+    if (model->push.flags & RIS_TISSUE_FLAG_KAEHLER) {
+        return;
+    }
+    model->push.lip_radius_mm = 30.0f;
+    model->contact_solid_count = 3;
+    for (uint32_t k = 0; k < 3; k++) {
+        ris_contact_solid *solid = &model->contact_solid[k];
+        solid->bone = k == 1 ? RIS_BONE_JAW : k == 2 ? RIS_BONE_EYE_L : RIS_BONE_SKULL;
+        solid->low = (ris_vec3){-30.0f, -25.0f, -35.0f};
+        solid->cell_mm = 5.0f + (float)k;
+        solid->count[0] = 9 + k;
+        solid->count[1] = 8;
+        solid->count[2] = 10;
+        solid->first = model->contact_sample_count;
+        model->contact_sample_count += solid->count[0] * solid->count[1] * solid->count[2];
+    }
+    for (uint32_t s = 0; s < model->contact_sample_count; s++) {
+        model->contact_grid[s] = random_vec(seed, 1.0f, random_between(seed, -3.0f, 9.0f));
+    }
+    for (uint32_t i = 0; i < n; i++) {
+        ris_contact_node c = {
+            .node = i, .lip_first = model->contact_pair_count, .touch_first = model->contact_touch_count};
+        c.lip_limit_mm = random_between(seed, -2.0f, 2.0f);
+        for (uint32_t k = random_word(seed) % (DEGREE_MAX + 1); n > 1 && k > 0; k--) {
+            model->contact_other[model->contact_pair_count++] = (i + 1 + random_word(seed) % (n - 1)) % n;
+        }
+        for (uint32_t k = 0; k < 3; k++) {
+            if (random_unit(seed) < 0.7f) {
+                model->contact_touch[model->contact_touch_count++] =
+                    (ris_contact_touch){k, random_between(seed, -2.0f, 2.0f)};
+            }
+        }
+        c.lip_end = model->contact_pair_count;
+        c.touch_end = model->contact_touch_count;
+        if (model->rest_position[i].w > 0.0f && (c.lip_end > c.lip_first || c.touch_end > c.touch_first)) {
+            model->contact_node[model->contact_node_count++] = c;
+        }
+    }
+    model->push.contact_node_count = model->contact_node_count;
+    model->push.lip_node_count = (2 * model->contact_node_count + 2) / 3;
+}
+
 static bool allocate(ris_model *model)
 {
     const size_t n = model->node_count;
@@ -104,11 +150,16 @@ static bool allocate(ris_model *model)
     model->bone_anchor = calloc(n, sizeof *model->bone_anchor);
     model->jaw_weight = calloc(n, sizeof *model->jaw_weight);
     model->fiber_point = calloc(1, sizeof *model->fiber_point);
+    model->contact_grid = calloc(4096, sizeof *model->contact_grid);
+    model->contact_node = calloc(n, sizeof *model->contact_node);
+    model->contact_touch = calloc(3 * n, sizeof *model->contact_touch);
+    model->contact_other = calloc(n * DEGREE_MAX + 1, sizeof *model->contact_other);
     model->channel_count = ris__beside_channel_count;
     model->channel = calloc(model->channel_count, sizeof *model->channel);
     return head && model->rest_position && model->spring_start && model->half_spring && model->ring_start &&
            model->ring && model->anchor_param && model->rest_normal && model->binding_start &&
-           model->bone_anchor && model->jaw_weight && model->fiber_point && model->channel;
+           model->bone_anchor && model->jaw_weight && model->fiber_point && model->channel &&
+           model->contact_grid && model->contact_node && model->contact_touch && model->contact_other;
 }
 
 ris_model *random_model_create(uint32_t node_count, uint32_t flags, uint32_t seed)
@@ -135,7 +186,9 @@ ris_model *random_model_create(uint32_t node_count, uint32_t flags, uint32_t see
     fill_nodes(model, &seed);
     fill_springs(model, &seed);
     model->mass_g = 0.25f;
-    model->push = (ris_sim_push){node_count, flags, 1.0f / 480.0f, 100.0f, 1000.0f, 1.5f, 0.3f, 12.0f};
+    model->push =
+        (ris_sim_push){node_count, flags, 1.0f / 480.0f, 100.0f, 1000.0f, 1.5f, 0.3f, 12.0f, 0, 0, 0.0f};
+    fill_contact(model, &seed);
     model->stable_dt_s = 0.01f;
     return model;
 }
@@ -157,6 +210,10 @@ void random_model_free(ris_model *model)
     free(model->bone_anchor);
     free((void *)model->jaw_weight);
     free(model->fiber_point);
+    free(model->contact_grid);
+    free(model->contact_node);
+    free(model->contact_touch);
+    free(model->contact_other);
     free(model->channel);
     free(model);
 }

@@ -74,6 +74,25 @@ static const field fields[] = {
     FIELD(ris_sim_push, switch_stretch),
     FIELD(ris_sim_push, compression),
     FIELD(ris_sim_push, damping_per_s),
+    FIELD(ris_sim_push, contact_node_count),
+    FIELD(ris_sim_push, lip_node_count),
+    FIELD(ris_sim_push, lip_radius_mm),
+    FIELD(ris_contact_node, node),
+    FIELD(ris_contact_node, lip_first),
+    FIELD(ris_contact_node, lip_end),
+    FIELD(ris_contact_node, lip_limit_mm),
+    FIELD(ris_contact_node, touch_first),
+    FIELD(ris_contact_node, touch_end),
+    FIELD(ris_contact_touch, body),
+    FIELD(ris_contact_touch, limit_mm),
+    FIELD(ris_contact_body, row_x),
+    FIELD(ris_contact_body, row_y),
+    FIELD(ris_contact_body, row_z),
+    FIELD(ris_contact_body, low),
+    FIELD(ris_contact_body, count_x),
+    FIELD(ris_contact_body, count_y),
+    FIELD(ris_contact_body, count_z),
+    FIELD(ris_contact_body, first),
 };
 #define FIELD_COUNT (sizeof fields / sizeof fields[0])
 
@@ -96,6 +115,12 @@ static const block blocks[] = {
     {"anchor_param_block", RIS_BIND_ANCHOR_PARAM, sizeof(ris_anchor_param)},
     {"anchor_point_block", RIS_BIND_ANCHOR_POINT, sizeof(ris_anchor_point)},
     {"anchor_delta_block", RIS_BIND_ANCHOR_DELTA, sizeof(ris_vec4)},
+    {"free_block", RIS_BIND_FREE, sizeof(ris_vec4)},
+    {"contact_node_block", RIS_BIND_CONTACT_NODE, sizeof(ris_contact_node)},
+    {"contact_touch_block", RIS_BIND_CONTACT_TOUCH, sizeof(ris_contact_touch)},
+    {"contact_other_block", RIS_BIND_CONTACT_OTHER, sizeof(uint32_t)},
+    {"contact_grid_block", RIS_BIND_CONTACT_GRID, sizeof(ris_vec4)},
+    {"contact_body_block", RIS_BIND_CONTACT_BODY, sizeof(ris_contact_body)},
 };
 #define BLOCK_COUNT (sizeof blocks / sizeof blocks[0])
 
@@ -108,7 +133,11 @@ static const struct {
     {"bend", BIT(POSITION) | BIT(REST) | BIT(BEND) | BIT(SPRING_START) | BIT(HALF_SPRING)},
     {"spring_force", BIT(POSITION) | BIT(FORCE) | BIT(BEND) | BIT(SPRING_START) | BIT(HALF_SPRING) |
                          BIT(ANCHOR_PARAM) | BIT(ANCHOR_POINT)},
-    {"verlet", BIT(POSITION) | BIT(VELOCITY_HALF) | BIT(VELOCITY_PREV) | BIT(FORCE)},
+    {"verlet", BIT(POSITION) | BIT(VELOCITY_HALF) | BIT(VELOCITY_PREV) | BIT(FORCE) | BIT(FREE)},
+    {"lip_normal", BIT(FREE) | BIT(NORMAL) | BIT(RING_START) | BIT(RING) | BIT(CONTACT_NODE)},
+    {"contact", BIT(POSITION) | BIT(VELOCITY_HALF) | BIT(VELOCITY_PREV) | BIT(NORMAL) | BIT(FREE) |
+                    BIT(CONTACT_NODE) | BIT(CONTACT_TOUCH) | BIT(CONTACT_OTHER) | BIT(CONTACT_GRID) |
+                    BIT(CONTACT_BODY)},
     {"normal", BIT(POSITION) | BIT(NORMAL) | BIT(RING_START) | BIT(RING)},
 };
 #define STAGE_COUNT (sizeof stages / sizeof stages[0])

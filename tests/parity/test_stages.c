@@ -34,6 +34,7 @@ typedef struct pair {
     ris_vec4 *a, *b;
     ris_anchor_point *point;
     ris_vec4 *delta;
+    ris_contact_body body[RIS_CONTACT_BODIES];
 } pair;
 
 static void pair_open(pair *p, const ris_model *model)
@@ -65,12 +66,12 @@ static void pair_close(pair *p)
 /* Random state near rest on both sides, and random anchors in p. */
 static void randomize(pair *p, uint32_t seed)
 {
-    static const float size[RIS_STATE_COUNT] = {3.0f, 200.0f, 200.0f, 5000.0f, 2.0f, 1.0f};
+    static const float size[RIS_STATE_COUNT] = {3.0f, 200.0f, 200.0f, 5000.0f, 2.0f, 1.0f, 3.0f};
     const uint32_t n = p->model->node_count;
     for (int s = 0; s < RIS_STATE_COUNT; s++) {
         for (uint32_t i = 0; i < n; i++) {
             p->a[i] = random_vec(&seed, size[s], 0.0f);
-            if (s == RIS_STATE_POSITION) {
+            if (s == RIS_STATE_POSITION || s == RIS_STATE_FREE) {
                 p->a[i].x += p->model->rest_position[i].x;
                 p->a[i].y += p->model->rest_position[i].y;
                 p->a[i].z += p->model->rest_position[i].z;
@@ -91,6 +92,18 @@ static void randomize(pair *p, uint32_t seed)
                             ? (ris_vec4){rest.x - shift.x, rest.y - shift.y, rest.z - shift.z, 0.0f}
                             : p->model->rest_normal[i];
         p->delta[i] = random_vec(&seed, 0.5f, 0.0f);
+    }
+    for (uint32_t k = 0; k < p->model->contact_solid_count; k++) {
+        const ris_contact_solid *solid = &p->model->contact_solid[k];
+        p->body[k] =
+            (ris_contact_body){.row_x = {0.96f, -0.28f, 0.0f, random_between(&seed, -4.0f, 4.0f)},
+                               .row_y = {0.28f, 0.96f, 0.0f, 1.5f},
+                               .row_z = {0.0f, 0.0f, 1.0f, -2.0f},
+                               .low = {solid->low.x, solid->low.y, solid->low.z, 1.0f / solid->cell_mm},
+                               .count_x = solid->count[0],
+                               .count_y = solid->count[1],
+                               .count_z = solid->count[2],
+                               .first = solid->first};
     }
 }
 
@@ -143,7 +156,7 @@ static void check_all(pair *p, const char *what)
 
 static void run_stage(pair *p, ris_stage stage)
 {
-    const ris_anchor_frame anchors = {p->point, p->delta};
+    const ris_anchor_frame anchors = {p->point, p->delta, p->body};
     assert_int_equal(ris__sim_stage(p->cpu, stage, &anchors, NULL), RIS_OK);
     assert_int_equal(ris__sim_stage(p->gpu, stage, &anchors, NULL), RIS_OK);
 }
@@ -246,8 +259,9 @@ static void the_device_repeats_itself(void **state)
 
 static ris_state output_of(ris_stage stage)
 {
-    static const ris_state output[RIS_STAGE_COUNT] = {RIS_STATE_POSITION, RIS_STATE_BEND, RIS_STATE_FORCE,
-                                                      RIS_STATE_POSITION, RIS_STATE_NORMAL};
+    static const ris_state output[RIS_STAGE_COUNT] = {
+        RIS_STATE_POSITION, RIS_STATE_BEND,     RIS_STATE_FORCE, RIS_STATE_POSITION,
+        RIS_STATE_NORMAL,   RIS_STATE_POSITION, RIS_STATE_NORMAL};
     return output[stage];
 }
 
@@ -259,7 +273,7 @@ static void a_stage_left_out_is_found(void **state)
     assert_non_null(model);
     pair_open(&p, model);
     for (int stage = 0; stage < RIS_STAGE_COUNT; stage++) {
-        const ris_anchor_frame anchors = {p.point, p.delta};
+        const ris_anchor_frame anchors = {p.point, p.delta, p.body};
         randomize(&p, 90 + (uint32_t)stage);
         assert_int_equal(ris__sim_stage(p.cpu, (ris_stage)stage, &anchors, NULL), RIS_OK);
         assert_true(read_and_compare(&p, output_of((ris_stage)stage)) < 65);
@@ -296,11 +310,11 @@ static void a_flipped_bit_is_found(void **state)
 
 static void a_swapped_buffer_is_found(void **state)
 {
-    static const uint32_t swap[RIS_STAGE_COUNT][2] = {{RIS_BIND_ANCHOR_DELTA, RIS_BIND_BEND},
-                                                      {RIS_BIND_POSITION, RIS_BIND_REST},
-                                                      {RIS_BIND_POSITION, RIS_BIND_REST},
-                                                      {RIS_BIND_VELOCITY_HALF, RIS_BIND_VELOCITY_PREV},
-                                                      {RIS_BIND_POSITION, RIS_BIND_REST}};
+    static const uint32_t swap[RIS_STAGE_COUNT][2] = {
+        {RIS_BIND_ANCHOR_DELTA, RIS_BIND_BEND}, {RIS_BIND_POSITION, RIS_BIND_REST},
+        {RIS_BIND_POSITION, RIS_BIND_REST},     {RIS_BIND_VELOCITY_HALF, RIS_BIND_VELOCITY_PREV},
+        {RIS_BIND_FREE, RIS_BIND_REST},         {RIS_BIND_FREE, RIS_BIND_REST},
+        {RIS_BIND_POSITION, RIS_BIND_REST}};
     ris_model *model = random_model_create(65, RIS_TISSUE_FLAG_CONTINUOUS, 11);
     pair p = {0};
     (void)state;

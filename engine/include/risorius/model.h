@@ -78,6 +78,16 @@ typedef struct ris_network_spring {
     float rest_mm; /* negative: the distance that contraction alone gives this tick */
 } ris_network_spring;
 
+/* A body of the contact stage (engine/model/contact.c). */
+typedef struct ris_contact_solid {
+    char name[16]; /* "skull", "teeth_lower", "eye.L" ... */
+    ris_bone bone; /* it moves with: SKULL, JAW, EYE_L or EYE_R */
+    ris_vec3 low;  /* first sample, mm at rest */
+    float cell_mm;
+    uint32_t count[3]; /* samples along x, y, z */
+    uint32_t first;    /* into ris_model.contact_grid, x fastest */
+} ris_contact_solid;
+
 /* An eyeball under its lids, at rest looking along +z: a ball with the cornea's sphere in front. */
 typedef struct ris_lid_eye {
     ris_vec3 centre;                        /* mm */
@@ -164,8 +174,17 @@ typedef struct ris_model {
     ris_fat_node *fat;
     uint32_t lining_count; /* 0 without lips, mouth_cavity or in the kaehler tissue */
     ris_lining_node *lining;
-    ris_vec3 *bone_anchor;   /* KA-14: point on the bone below the node at rest, mm (node_count) */
-    const float *jaw_weight; /* (node_count) */
+    /* contact: nothing in the kaehler tissue */
+    uint32_t contact_solid_count, contact_sample_count, contact_node_count, contact_touch_count,
+        contact_pair_count;
+    ris_contact_solid contact_solid[RIS_CONTACT_BODIES];
+    ris_vec4 *contact_grid;         /* xyz unit, away from the body; w distance, mm (contact_sample_count) */
+    ris_contact_node *contact_node; /* nodes with the same bodies stand together (contact_node_count) */
+    ris_contact_touch *contact_touch; /* (contact_touch_count) */
+    uint32_t *contact_other;          /* nodes of the other lip (contact_pair_count) */
+    ris_vec3 *bone_anchor;            /* KA-14: point on the bone below the node at rest, mm (node_count) */
+    const float *jaw_weight;          /* (node_count) */
+    float *jaw_slide_weight;              /* the same for slides of the jaw; NULL = jaw_weight (node_count) */
 
     double bake_ms,
         muscle_bake_ms; /* what ris_model_create took, and its part from muscle grids to bindings */

@@ -1,6 +1,6 @@
 /* The simulation: a pose in, skin positions and normals out, on the CPU or on a Vulkan device. One thread
- * per sim. One tick = 1/60 s: jaw_pose .. tongue_pose on the host, anchor_shift, substeps of [bend,
- * spring_force, verlet], normal on the backend. */
+ * per sim. One tick = 1/60 s: jaw_pose .. contact_pose on the host, then on the backend anchor_shift, substeps of
+ * [bend, spring_force, verlet, lip_normal, contact], normal. */
 #pragma once
 
 #include "risorius/model.h"
@@ -20,6 +20,8 @@ typedef enum ris_stage {
     RIS_STAGE_BEND,
     RIS_STAGE_SPRING_FORCE,
     RIS_STAGE_VERLET,
+    RIS_STAGE_LIP_NORMAL,
+    RIS_STAGE_CONTACT,
     RIS_STAGE_NORMAL,
     RIS_STAGE_COUNT
 } ris_stage;
@@ -33,6 +35,7 @@ typedef enum ris_state {
     RIS_STATE_FORCE,
     RIS_STATE_BEND,
     RIS_STATE_NORMAL,
+    RIS_STATE_FREE, /* position before contact */
     RIS_STATE_COUNT
 } ris_state;
 const char *ris_state_name(ris_state state);

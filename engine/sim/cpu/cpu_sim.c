@@ -21,8 +21,10 @@ static void cpu_destroy(void *self)
     free(state->force);
     free(state->bend);
     free(state->normal);
+    free(state->free);
     free(state->anchor_point);
     free(state->anchor_delta);
+    free(state->list);
     free(state);
 }
 
@@ -30,6 +32,9 @@ static void take_anchors(ris_cpu_state *state, const ris_anchor_frame *anchors)
 {
     memcpy(state->anchor_point, anchors->point, state->model->node_count * sizeof *state->anchor_point);
     memcpy(state->anchor_delta, anchors->delta, state->model->node_count * sizeof *state->anchor_delta);
+    if (anchors->body) {
+        memcpy(state->contact_body, anchors->body, sizeof state->contact_body);
+    }
 }
 
 static void (*const stages[RIS_STAGE_COUNT])(ris_cpu_state *) = {
@@ -37,6 +42,8 @@ static void (*const stages[RIS_STAGE_COUNT])(ris_cpu_state *) = {
     [RIS_STAGE_BEND] = ris__cpu_bend,
     [RIS_STAGE_SPRING_FORCE] = ris__cpu_spring_force,
     [RIS_STAGE_VERLET] = ris__cpu_verlet,
+    [RIS_STAGE_LIP_NORMAL] = ris__cpu_lip_normal,
+    [RIS_STAGE_CONTACT] = ris__cpu_contact,
     [RIS_STAGE_NORMAL] = ris__cpu_normal,
 };
 
@@ -51,20 +58,21 @@ static ris_result cpu_frame(void *self, const ris_anchor_frame *anchors, uint32_
                             ris_sim_times *times, ris_error *err)
 {
     ris_cpu_state *state = self;
-    (void)err;
-    const bool bends = !(state->model->push.flags & RIS_TISSUE_FLAG_KAEHLER);
     const uint64_t start = ris__clock_ns();
     take_anchors(state, anchors);
     times->upload_ms += ris__clock_ms(start, ris__clock_ns());
-    timed_stage(state, RIS_STAGE_ANCHOR_SHIFT, times);
-    for (uint32_t s = 0; s < substeps; ++s) {
-        if (bends) {
-            timed_stage(state, RIS_STAGE_BEND, times);
+    if (substeps > state->list_substeps) {
+        uint8_t *grown = realloc(state->list, 5 * (size_t)substeps + 2);
+        if (!grown) {
+            return ris_fail(err, RIS_ERROR_MEMORY, "no memory for the stages of %u substeps", substeps);
         }
-        timed_stage(state, RIS_STAGE_SPRING_FORCE, times);
-        timed_stage(state, RIS_STAGE_VERLET, times);
+        state->list = grown;
+        state->list_substeps = substeps;
     }
-    timed_stage(state, RIS_STAGE_NORMAL, times);
+    const uint32_t count = ris__sim_stages(state->model, substeps, state->list);
+    for (uint32_t k = 0; k < count; ++k) {
+        timed_stage(state, (ris_stage)state->list[k], times);
+    }
     return RIS_OK;
 }
 
@@ -86,6 +94,7 @@ static ris_vec4 *array_of(ris_cpu_state *state, ris_state which)
     case RIS_STATE_VELOCITY_PREV: return state->velocity_prev;
     case RIS_STATE_FORCE: return state->force;
     case RIS_STATE_BEND: return state->bend;
+    case RIS_STATE_FREE: return state->free;
     case RIS_STATE_NORMAL:
     case RIS_STATE_COUNT: break;
     }
@@ -119,9 +128,9 @@ ris_result ris_sim_create_cpu(const ris_model *model, ris_sim **out, ris_error *
         return result;
     }
     state->model = model;
-    ris_vec4 **const arrays[] = {&state->position,    &state->velocity_half, &state->velocity_prev,
-                                 &state->force,       &state->bend,          &state->normal,
-                                 &state->anchor_delta};
+    ris_vec4 **const arrays[] = {&state->position, &state->velocity_half, &state->velocity_prev,
+                                 &state->force,    &state->bend,          &state->normal,
+                                 &state->free,     &state->anchor_delta};
     for (size_t k = 0; result == RIS_OK && k < sizeof arrays / sizeof arrays[0]; ++k) {
         result =
             ris__model_alloc(arrays[k], model->node_count, sizeof **arrays[k], "the CPU simulation", err);

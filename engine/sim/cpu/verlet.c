@@ -25,6 +25,7 @@ void ris__cpu_verlet(ris_cpu_state *state)
             integrate(&x->x, &half->x, &prev->x, f->x, w, &push);
             integrate(&x->y, &half->y, &prev->y, f->y, w, &push);
             integrate(&x->z, &half->z, &prev->z, f->z, w, &push);
+            state->free[i] = *x;
         }
     }
 }

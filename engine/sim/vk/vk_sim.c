@@ -1,10 +1,10 @@
 /* The simulation on a Vulkan device (KA-11..20, KA-37): the stages of shaders/sim in this order.
  *
- *   upload anchors -> anchor_shift -> [ bend -> spring_force -> verlet ] x substeps -> normal
+ *   upload anchors -> anchor_shift -> [ bend -> spring_force -> verlet -> lip_normal -> contact ] x substeps -> normal
  *
  * All of it is one command buffer, recorded once and submitted again every tick, with one fence. In place is
- * safe: spring_force reads all positions and writes its own node's force, verlet touches its own node only; a
- * global barrier stands between stages. The substep loop is here and never inside a shader (lavapipe stops
+ * safe: spring_force reads all positions and writes its own node's force, verlet touches its own node only and
+ * leaves its position once more for contact, which reads all of those; a global barrier stands between stages. The substep loop is here and never inside a shader (lavapipe stops
  * long loops silently). */
 #include "sim/vk/vk_state.h"
 
@@ -15,6 +15,8 @@
 #include "base/clock.h"
 #include "sim/anchor_shift_comp.h"
 #include "sim/bend_comp.h"
+#include "sim/contact_comp.h"
+#include "sim/lip_normal_comp.h"
 #include "sim/normal_comp.h"
 #include "sim/spring_force_comp.h"
 #include "sim/verlet_comp.h"
@@ -71,6 +73,8 @@ static ris_result create_pipelines(vk_sim *sim, ris_error *err)
         [RIS_STAGE_BEND] = {ris_spv_bend_comp, sizeof ris_spv_bend_comp},
         [RIS_STAGE_SPRING_FORCE] = {ris_spv_spring_force_comp, sizeof ris_spv_spring_force_comp},
         [RIS_STAGE_VERLET] = {ris_spv_verlet_comp, sizeof ris_spv_verlet_comp},
+        [RIS_STAGE_LIP_NORMAL] = {ris_spv_lip_normal_comp, sizeof ris_spv_lip_normal_comp},
+        [RIS_STAGE_CONTACT] = {ris_spv_contact_comp, sizeof ris_spv_contact_comp},
         [RIS_STAGE_NORMAL] = {ris_spv_normal_comp, sizeof ris_spv_normal_comp},
     };
     ris_result result = RIS_OK;
@@ -105,7 +109,10 @@ static void record_start(const vk_sim *sim, VkCommandBuffer cmd)
 static void record_stage(const vk_sim *sim, VkCommandBuffer cmd, ris_stage stage)
 {
     vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, sim->pipeline[stage]);
-    vkCmdDispatch(cmd, (sim->model->node_count + RIS_GROUP_NODE - 1) / RIS_GROUP_NODE, 1, 1);
+    const uint32_t count = stage == RIS_STAGE_CONTACT      ? sim->model->push.contact_node_count
+                           : stage == RIS_STAGE_LIP_NORMAL ? sim->model->push.lip_node_count
+                                                           : sim->model->node_count;
+    vkCmdDispatch(cmd, (count + RIS_GROUP_NODE - 1) / RIS_GROUP_NODE, 1, 1);
 }
 
 static void record_between(VkCommandBuffer cmd)
@@ -117,23 +124,6 @@ static void record_end(VkCommandBuffer cmd)
 {
     ris_vk_barrier(cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
                    everything | VK_PIPELINE_STAGE_2_HOST_BIT, any_access | VK_ACCESS_2_HOST_READ_BIT);
-}
-
-/* The stages of a tick in order; returns how many. list holds 3 x substeps + 2. */
-static uint32_t frame_stages(const vk_sim *sim, uint32_t substeps, uint8_t *list)
-{
-    const bool bend = !(sim->model->push.flags & RIS_TISSUE_FLAG_KAEHLER);
-    uint32_t count = 0;
-    list[count++] = RIS_STAGE_ANCHOR_SHIFT;
-    for (uint32_t k = 0; k < substeps; k++) {
-        if (bend) {
-            list[count++] = RIS_STAGE_BEND;
-        }
-        list[count++] = RIS_STAGE_SPRING_FORCE;
-        list[count++] = RIS_STAGE_VERLET;
-    }
-    list[count++] = RIS_STAGE_NORMAL;
-    return count;
 }
 
 /* Room for the stage list and the timestamps of a tick. More substeps than fit the pool go untimed. */
@@ -164,12 +154,12 @@ static ris_result record_frame(vk_sim *sim, uint32_t substeps, ris_error *err)
     VkCommandBuffer cmd = sim->frame.handle;
     uint32_t count;
     sim->recorded_substeps = 0;
-    RIS_TRY(reserve(sim, 3 * substeps + 2, err));
+    RIS_TRY(reserve(sim, 5 * substeps + 2, err));
     RIS_TRY(ris_vk_cmd_begin(sim->vk, &sim->frame, false, err));
     ris_vk_query_reset(cmd, &sim->query);
     record_start(sim, cmd);
     ris_vk_query_write(cmd, &sim->query, 0);
-    count = frame_stages(sim, substeps, sim->query_stage);
+    count = ris__sim_stages(sim->model, substeps, sim->query_stage);
     for (uint32_t k = 0; k < count; k++) {
         if (k > 0) {
             record_between(cmd);
@@ -177,7 +167,7 @@ static ris_result record_frame(vk_sim *sim, uint32_t substeps, ris_error *err)
         record_stage(sim, cmd, (ris_stage)sim->query_stage[k]);
         ris_vk_query_write(cmd, &sim->query, k + 1);
     }
-    /* the pool may be larger (no bend): every query must be written to be read with WAIT */
+    /* the pool may be larger (no bend, no contact): every query must be written to be read with WAIT */
     for (uint32_t k = count + 1; k < sim->query.count; k++) {
         ris_vk_query_write(cmd, &sim->query, k);
     }
@@ -201,6 +191,8 @@ static ris_result upload(vk_sim *sim, const ris_anchor_frame *anchors, ris_error
            (size_t)mem->range[RIS_BIND_ANCHOR_POINT].size);
     memcpy(data + mem->range[RIS_BIND_ANCHOR_DELTA].offset, anchors->delta,
            (size_t)mem->range[RIS_BIND_ANCHOR_DELTA].size);
+    memcpy(data + mem->range[RIS_BIND_CONTACT_BODY].offset, anchors->body,
+           (size_t)mem->range[RIS_BIND_CONTACT_BODY].size);
     return ris_vk_buffer_flush(sim->vk, &mem->anchor, err);
 }
 

@@ -8,13 +8,20 @@
 #define GATHER_MAX 30000u
 
 static const uint32_t state_bindings[] = {RIS_BIND_POSITION, RIS_BIND_VELOCITY_HALF, RIS_BIND_VELOCITY_PREV,
-                                          RIS_BIND_FORCE,    RIS_BIND_BEND,          RIS_BIND_NORMAL};
-static const uint32_t table_bindings[] = {RIS_BIND_REST,       RIS_BIND_SPRING_START, RIS_BIND_HALF_SPRING,
-                                          RIS_BIND_RING_START, RIS_BIND_RING,         RIS_BIND_ANCHOR_PARAM};
-static const uint32_t anchor_bindings[] = {RIS_BIND_ANCHOR_POINT, RIS_BIND_ANCHOR_DELTA};
+                                          RIS_BIND_FORCE,    RIS_BIND_BEND,          RIS_BIND_NORMAL,
+                                          RIS_BIND_FREE};
+static const uint32_t table_bindings[] = {
+    RIS_BIND_REST,          RIS_BIND_SPRING_START, RIS_BIND_HALF_SPRING,  RIS_BIND_RING_START,
+    RIS_BIND_RING,          RIS_BIND_ANCHOR_PARAM, RIS_BIND_CONTACT_NODE, RIS_BIND_CONTACT_TOUCH,
+    RIS_BIND_CONTACT_OTHER, RIS_BIND_CONTACT_GRID};
+static const uint32_t anchor_bindings[] = {RIS_BIND_ANCHOR_POINT, RIS_BIND_ANCHOR_DELTA,
+                                           RIS_BIND_CONTACT_BODY};
+#define COUNT(list) ((uint32_t)(sizeof(list) / sizeof(list)[0]))
 
 _Static_assert(sizeof(ris_vec4) == 16 && sizeof(ris_half_spring) == 20 && sizeof(ris_ring) == 8 &&
-                   sizeof(ris_anchor_param) == 16 && sizeof(ris_anchor_point) == 32,
+                   sizeof(ris_anchor_param) == 16 && sizeof(ris_anchor_point) == 32 &&
+                   sizeof(ris_contact_body) == 80 && sizeof(ris_contact_node) == 24 &&
+                   sizeof(ris_contact_touch) == 8,
                "scalar layout");
 _Static_assert(sizeof(ris_sim_push) <= 128, "push constants");
 _Static_assert(sizeof state_bindings / sizeof(uint32_t) + sizeof table_bindings / sizeof(uint32_t) +
@@ -30,6 +37,7 @@ uint32_t ris__vk_state_binding(ris_state state)
     case RIS_STATE_VELOCITY_PREV: return RIS_BIND_VELOCITY_PREV;
     case RIS_STATE_FORCE: return RIS_BIND_FORCE;
     case RIS_STATE_BEND: return RIS_BIND_BEND;
+    case RIS_STATE_FREE: return RIS_BIND_FREE;
     case RIS_STATE_NORMAL:
     case RIS_STATE_COUNT: break;
     }
@@ -42,6 +50,7 @@ static const void *initial(const ris_model *model, uint32_t binding, VkDeviceSiz
     const VkDeviceSize nodes = model->node_count;
     switch (binding) {
     case RIS_BIND_POSITION:
+    case RIS_BIND_FREE:
     case RIS_BIND_REST: *out_size = nodes * sizeof(ris_vec4); return model->rest_position;
     case RIS_BIND_NORMAL: *out_size = nodes * sizeof(ris_vec4); return model->rest_normal;
     case RIS_BIND_SPRING_START: *out_size = (nodes + 1) * sizeof(uint32_t); return model->spring_start;
@@ -53,6 +62,19 @@ static const void *initial(const ris_model *model, uint32_t binding, VkDeviceSiz
         *out_size = 3 * (VkDeviceSize)model->triangle_count * sizeof(ris_ring);
         return model->ring;
     case RIS_BIND_ANCHOR_PARAM: *out_size = nodes * sizeof(ris_anchor_param); return model->anchor_param;
+    case RIS_BIND_CONTACT_NODE:
+        *out_size = model->contact_node_count * sizeof(ris_contact_node);
+        return model->contact_node;
+    case RIS_BIND_CONTACT_TOUCH:
+        *out_size = model->contact_touch_count * sizeof(ris_contact_touch);
+        return model->contact_touch;
+    case RIS_BIND_CONTACT_OTHER:
+        *out_size = model->contact_pair_count * sizeof(uint32_t);
+        return model->contact_other;
+    case RIS_BIND_CONTACT_GRID:
+        *out_size = model->contact_sample_count * sizeof(ris_vec4);
+        return model->contact_grid;
+    case RIS_BIND_CONTACT_BODY: *out_size = RIS_CONTACT_BODIES * sizeof(ris_contact_body); return NULL;
     case RIS_BIND_ANCHOR_POINT: *out_size = nodes * sizeof(ris_anchor_point); return NULL;
     default: *out_size = nodes * sizeof(ris_vec4); return NULL;
     }
@@ -131,8 +153,8 @@ static ris_result create_anchor_copy(ris_device *vk, const ris_model *model, vk_
     if (state->anchor.device_local) {
         return RIS_OK;
     }
-    return fill_buffer(vk, model, RIS_VK_DEVICE, anchor_bindings, 2, "sim anchor copy", state,
-                       &state->anchor_device, err);
+    return fill_buffer(vk, model, RIS_VK_DEVICE, anchor_bindings, COUNT(anchor_bindings), "sim anchor copy",
+                       state, &state->anchor_device, err);
 }
 
 ris_result ris__vk_state_create(ris_device *vk, const ris_model *model, vk_state *out, ris_error *err)
@@ -141,9 +163,12 @@ ris_result ris__vk_state_create(ris_device *vk, const ris_model *model, vk_state
     VkDescriptorType type[RIS_BIND_COUNT];
     memset(out, 0, sizeof *out);
     RIS_TRY(check_model(vk, model, err));
-    RIS_TRY(fill_buffer(vk, model, RIS_VK_DEVICE, state_bindings, 6, "sim state", out, &out->state, err));
-    RIS_TRY(fill_buffer(vk, model, RIS_VK_DEVICE, table_bindings, 6, "sim table", out, &out->table, err));
-    RIS_TRY(fill_buffer(vk, model, RIS_VK_UPLOAD, anchor_bindings, 2, "sim anchor", out, &out->anchor, err));
+    RIS_TRY(fill_buffer(vk, model, RIS_VK_DEVICE, state_bindings, COUNT(state_bindings), "sim state", out,
+                        &out->state, err));
+    RIS_TRY(fill_buffer(vk, model, RIS_VK_DEVICE, table_bindings, COUNT(table_bindings), "sim table", out,
+                        &out->table, err));
+    RIS_TRY(fill_buffer(vk, model, RIS_VK_UPLOAD, anchor_bindings, COUNT(anchor_bindings), "sim anchor", out,
+                        &out->anchor, err));
     RIS_TRY(create_anchor_copy(vk, model, out, err));
     if (!out->state.data || !out->state.cached) {
         RIS_TRY(ris_vk_buffer_create(vk, RIS_VK_READBACK, out->range[RIS_BIND_POSITION].size, 0,

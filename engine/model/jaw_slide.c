@@ -1,0 +1,45 @@
+/* How far a node follows the mandible when that slides (jaw.forward, jaw.side) rather than opens. Opening parts the
+ * lips, so the jaw's weights are steep at the corner of the mouth; a slide with the mouth closed moves the ring of the
+ * lips as one soft band, and steep weights would shear its corner over. KA-05 knows no slide. */
+#include "model_impl.h"
+#include "vec3.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define FAR_WEIGHT 0.02f
+#define PASSES 120 /* of smoothing over the springs: about 25 mm */
+
+ris_result ris__bake_jaw_slide(ris_bake *bake, ris_error *err)
+{
+    ris_model *model = bake->model;
+    const uint32_t n = model->node_count;
+    float *before = NULL;
+    ris_result result =
+        ris__model_alloc(&model->jaw_slide_weight, n, sizeof *model->jaw_slide_weight, "jaw weights", err);
+    if (result == RIS_OK) {
+        result = ris__model_alloc(&before, n, sizeof *before, "jaw weights", err);
+    }
+    if (result != RIS_OK) {
+        return result;
+    }
+    memcpy(model->jaw_slide_weight, bake->head->jaw_weight, n * sizeof *before);
+    for (uint32_t pass = 0; pass < PASSES; ++pass) {
+        memcpy(before, model->jaw_slide_weight, n * sizeof *before);
+        for (uint32_t i = 0; i < n; ++i) {
+            const uint32_t first = model->spring_start[i], end = model->spring_start[i + 1];
+            float sum = 0.0f;
+            for (uint32_t h = first; h < end; ++h) {
+                sum += before[model->half_spring[h].other];
+            }
+            if (bake->moving[i] && end > first) {
+                model->jaw_slide_weight[i] = 0.5f * before[i] + 0.5f * sum / (float)(end - first);
+            }
+        }
+    }
+    for (uint32_t i = 0; i < n; ++i) { /* what is left far away, up to the scalp, is nothing */
+        model->jaw_slide_weight[i] = f_max((model->jaw_slide_weight[i] - FAR_WEIGHT) / (1.0f - FAR_WEIGHT), 0.0f);
+    }
+    free(before);
+    return RIS_OK;
+}

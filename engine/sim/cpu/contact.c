@@ -1,0 +1,112 @@
+/* contact (beyond the thesis; KF-04): nodes stay off the other lip and out of bone, teeth and eyes. Every node from the
+ * positions before contact, so the order of nodes means nothing. Order: docs/physics.md. */
+#include "sim/cpu/cpu_stage.h"
+
+#include "model/model_impl.h"
+#include "model/vec3.h"
+
+#define SHARE 0.5f /* of what is missing, a substep: each lip gives way by half, and notches cannot throw */
+#define GLIDE 0.5f /* of its speed a touching node keeps, a substep */
+#define LIP_WEIGHT_FULL 0.3f /* with less of the other lip near, contact fades */
+
+/* What contact may change of a node. */
+typedef struct touch {
+    ris_vec3 x, half, prev;
+} touch;
+
+/* Speed v along what is touched: nothing into it, and half of the rest is lost to the moist film between. */
+static ris_vec3 glide(ris_vec3 n, ris_vec3 v)
+{
+    const float c = v3_dot(n, v);
+    const ris_vec3 u = c < 0.0f ? v3(v.x - c * n.x, v.y - c * n.y, v.z - c * n.z) : v;
+    return v3_scale(u, GLIDE);
+}
+
+/* Moves the node by push along the unit vector n and takes the speed against n from it. */
+static void push_off(touch *t, ris_vec3 n, float push)
+{
+    if (push > 0.0f) {
+        t->x = v3_mad(t->x, push, n);
+        t->half = glide(n, t->half);
+        t->prev = glide(n, t->prev);
+    }
+}
+
+static void touch_lip(const ris_cpu_state *state, const ris_contact_node *contact, touch *t)
+{
+    const float limit = contact->lip_limit_mm;
+    ris_vec3 away;
+    float weight;
+    const float d = ris__lip_distance(state->model, state->free, state->normal, contact, &away, &weight);
+    const float l = v3_length(away);
+    if (!(weight > 0.0f) || !(l > 0.0f) || !(d < limit)) {
+        return;
+    }
+    const float share = SHARE * f_min(weight / LIP_WEIGHT_FULL, 1.0f);
+    push_off(t, v3(away.x / l, away.y / l, away.z / l), share * (limit - d));
+}
+
+static ris_vec4 blend(ris_vec4 a, ris_vec4 b, float t)
+{
+    const ris_vec4 r = {a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), a.z + t * (b.z - a.z),
+                        a.w + t * (b.w - a.w)};
+    return r;
+}
+
+/* The body's grid at p of its rest frame; false outside it. */
+static bool sample(const ris_vec4 *grid, const ris_contact_body *body, ris_vec3 p, ris_vec4 *out)
+{
+    const float per_mm = body->low.w;
+    const ris_vec3 q =
+        v3((p.x - body->low.x) * per_mm, (p.y - body->low.y) * per_mm, (p.z - body->low.z) * per_mm);
+    if (!(q.x >= 0.0f && q.x < (float)(body->count_x - 1) && q.y >= 0.0f &&
+          q.y < (float)(body->count_y - 1) && q.z >= 0.0f && q.z < (float)(body->count_z - 1))) {
+        return false;
+    }
+    const uint32_t x = (uint32_t)q.x, y = (uint32_t)q.y, z = (uint32_t)q.z;
+    const float fx = q.x - (float)x, fy = q.y - (float)y, fz = q.z - (float)z;
+    const uint32_t row = body->count_x, slice = row * body->count_y;
+    const ris_vec4 *v = grid + (body->first + z * slice + y * row + x);
+    const ris_vec4 near = blend(blend(v[0], v[1], fx), blend(v[row], v[row + 1], fx), fy);
+    const ris_vec4 far =
+        blend(blend(v[slice], v[slice + 1], fx), blend(v[slice + row], v[slice + row + 1], fx), fy);
+    *out = blend(near, far, fz);
+    return true;
+}
+
+static void touch_body(const ris_vec4 *grid, const ris_contact_body *body, float limit, touch *t)
+{
+    const ris_vec4 rx = body->row_x, ry = body->row_y, rz = body->row_z;
+    const ris_vec3 x = t->x;
+    const ris_vec3 p =
+        v3(((rx.x * x.x + rx.y * x.y) + rx.z * x.z) + rx.w, ((ry.x * x.x + ry.y * x.y) + ry.z * x.z) + ry.w,
+           ((rz.x * x.x + rz.y * x.y) + rz.z * x.z) + rz.w);
+    ris_vec4 g;
+    if (!sample(grid, body, p, &g) || !(g.w < limit)) {
+        return;
+    }
+    const ris_vec3 w = v3((rx.x * g.x + ry.x * g.y) + rz.x * g.z, (rx.y * g.x + ry.y * g.y) + rz.y * g.z,
+                          (rx.z * g.x + ry.z * g.y) + rz.z * g.z);
+    const float l = v3_length(w);
+    if (l > 0.0f) {
+        push_off(t, v3(w.x / l, w.y / l, w.z / l), SHARE * (limit - g.w));
+    }
+}
+
+void ris__cpu_contact(ris_cpu_state *state)
+{
+    const ris_model *model = state->model;
+    for (uint32_t c = 0; c < model->contact_node_count; ++c) {
+        const ris_contact_node *contact = &model->contact_node[c];
+        const uint32_t i = contact->node;
+        touch t = {v4_xyz(state->free[i]), v4_xyz(state->velocity_half[i]), v4_xyz(state->velocity_prev[i])};
+        touch_lip(state, contact, &t);
+        for (uint32_t k = contact->touch_first; k < contact->touch_end; ++k) {
+            const ris_contact_touch *with = &model->contact_touch[k];
+            touch_body(model->contact_grid, &state->contact_body[with->body], with->limit_mm, &t);
+        }
+        state->position[i] = v4_from(t.x, state->free[i].w);
+        state->velocity_half[i] = v4_from(t.half, 0.0f);
+        state->velocity_prev[i] = v4_from(t.prev, 0.0f);
+    }
+}

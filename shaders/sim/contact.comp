@@ -1,0 +1,150 @@
+// contact (beyond the thesis; KF-04): nodes stay off the other lip and out of bone, teeth and eyes. Every node from the
+// positions before contact, so the order of nodes means nothing. Operation order: docs/physics.md.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "stage.glsl"
+
+layout(set = 0, binding = RIS_BIND_POSITION, scalar) writeonly buffer position_block { vec4 position[]; };
+layout(set = 0, binding = RIS_BIND_VELOCITY_HALF, scalar) buffer velocity_half_block { vec4 velocity_half[]; };
+layout(set = 0, binding = RIS_BIND_VELOCITY_PREV, scalar) buffer velocity_prev_block { vec4 velocity_prev[]; };
+layout(set = 0, binding = RIS_BIND_NORMAL, scalar) readonly buffer normal_block { vec4 normal[]; };
+layout(set = 0, binding = RIS_BIND_FREE, scalar) readonly buffer free_block { vec4 free_position[]; };
+layout(set = 0, binding = RIS_BIND_CONTACT_NODE, scalar) readonly buffer contact_node_block { ris_contact_node contact_node[]; };
+layout(set = 0, binding = RIS_BIND_CONTACT_TOUCH, scalar) readonly buffer contact_touch_block { ris_contact_touch contact_touch[]; };
+layout(set = 0, binding = RIS_BIND_CONTACT_OTHER, scalar) readonly buffer contact_other_block { uint contact_other[]; };
+layout(set = 0, binding = RIS_BIND_CONTACT_GRID, scalar) readonly buffer contact_grid_block { vec4 contact_grid[]; };
+layout(set = 0, binding = RIS_BIND_CONTACT_BODY, scalar) readonly buffer contact_body_block { ris_contact_body contact_body[]; };
+
+const float SHARE = 0.5; // of what is missing, a substep: each lip gives way by half, and notches cannot throw
+const float GLIDE = 0.5; // of its speed a touching node keeps, a substep
+const float LIP_WEIGHT_FULL = 0.3; // with less of the other lip near, contact fades
+
+float dot3(vec3 a, vec3 b)
+{
+    precise float d = (a.x * b.x + a.y * b.y) + a.z * b.z;
+    return d;
+}
+
+// Speed v along what is touched: nothing into it, and half of the rest is lost to the moist film between.
+vec3 glide(vec3 n, vec3 v)
+{
+    precise float c = dot3(n, v);
+    if (c < 0.0) {
+        precise vec3 u = (v - c * n) * GLIDE;
+        return u;
+    }
+    precise vec3 w = v * GLIDE;
+    return w;
+}
+
+// How far the node at x has to go off the other lip, along the unit vector away_from; 0 = it does not touch.
+float touch_lip(ris_contact_node c, vec3 x, out vec3 away_from)
+{
+    away_from = vec3(0.0);
+    const vec3 n = normal[c.node].xyz;
+    precise float radius2 = push.lip_radius_mm * push.lip_radius_mm;
+    precise float weight = 0.0;
+    precise float dist = 0.0;
+    precise vec3 away = vec3(0.0);
+    for (uint k = c.lip_first; k < c.lip_end; k++) {
+        const uint j = contact_other[k];
+        const vec3 nj = normal[j].xyz;
+        precise vec3 r = x - free_position[j].xyz;
+        precise float closeness = 1.0 - dot3(r, r) / radius2;
+        precise float along = dot3(n, nj);
+        if (closeness > 0.0 && along < 0.0) {
+            precise vec3 m = n - nj;
+            precise float w = (closeness * closeness) * along;
+            precise float q = w / sqrt(dot3(m, m));
+            weight = weight - w;
+            dist = dist + q * dot3(m, r);
+            away = away + q * m;
+        }
+    }
+    precise float l = sqrt(dot3(away, away));
+    if (weight > 0.0 && l > 0.0) {
+        precise float d = dist / weight;
+        if (d < c.lip_limit_mm) {
+            precise float share = SHARE * min(weight / LIP_WEIGHT_FULL, 1.0);
+            precise float amount = share * (c.lip_limit_mm - d);
+            precise vec3 u = vec3(away.x / l, away.y / l, away.z / l);
+            away_from = u;
+            return amount;
+        }
+    }
+    return 0.0;
+}
+
+// The same for body k.
+float touch_body(uint k, vec3 x, float limit, out vec3 away_from)
+{
+    away_from = vec3(0.0);
+    const ris_contact_body b = contact_body[k];
+    precise vec3 p = vec3(((b.row_x.x * x.x + b.row_x.y * x.y) + b.row_x.z * x.z) + b.row_x.w,
+                          ((b.row_y.x * x.x + b.row_y.y * x.y) + b.row_y.z * x.z) + b.row_y.w,
+                          ((b.row_z.x * x.x + b.row_z.y * x.y) + b.row_z.z * x.z) + b.row_z.w);
+    precise vec3 q = (p - b.low.xyz) * b.low.w;
+    if (!(q.x >= 0.0 && q.x < float(b.count_x - 1u) && q.y >= 0.0 && q.y < float(b.count_y - 1u) && q.z >= 0.0 &&
+          q.z < float(b.count_z - 1u))) {
+        return 0.0;
+    }
+    const uvec3 c = uvec3(q);
+    precise vec3 f = q - vec3(c);
+    const uint row = b.count_x, slice = row * b.count_y;
+    const uint v = b.first + c.z * slice + c.y * row + c.x;
+    const vec4 v000 = contact_grid[v], v100 = contact_grid[v + 1u];
+    const vec4 v010 = contact_grid[v + row], v110 = contact_grid[v + row + 1u];
+    const vec4 v001 = contact_grid[v + slice], v101 = contact_grid[v + slice + 1u];
+    const vec4 v011 = contact_grid[v + slice + row], v111 = contact_grid[v + slice + row + 1u];
+    precise vec4 c00 = v000 + f.x * (v100 - v000);
+    precise vec4 c10 = v010 + f.x * (v110 - v010);
+    precise vec4 c01 = v001 + f.x * (v101 - v001);
+    precise vec4 c11 = v011 + f.x * (v111 - v011);
+    precise vec4 c0 = c00 + f.y * (c10 - c00);
+    precise vec4 c1 = c01 + f.y * (c11 - c01);
+    precise vec4 g = c0 + f.z * (c1 - c0);
+    if (g.w < limit) {
+        precise vec3 w = vec3((b.row_x.x * g.x + b.row_y.x * g.y) + b.row_z.x * g.z,
+                              (b.row_x.y * g.x + b.row_y.y * g.y) + b.row_z.y * g.z,
+                              (b.row_x.z * g.x + b.row_y.z * g.y) + b.row_z.z * g.z);
+        precise float l = sqrt(dot3(w, w));
+        if (l > 0.0) {
+            precise float amount = SHARE * (limit - g.w);
+            precise vec3 n = vec3(w.x / l, w.y / l, w.z / l);
+            away_from = n;
+            return amount;
+        }
+    }
+    return 0.0;
+}
+
+void main()
+{
+    if (gl_GlobalInvocationID.x >= push.contact_node_count) {
+        return;
+    }
+    const ris_contact_node c = contact_node[gl_GlobalInvocationID.x];
+    const vec4 x = free_position[c.node];
+    precise vec3 at = x.xyz;
+    precise vec3 half_v = velocity_half[c.node].xyz;
+    precise vec3 prev_v = velocity_prev[c.node].xyz;
+    vec3 n;
+    const float lip = touch_lip(c, at, n);
+    if (lip > 0.0) {
+        at = at + lip * n;
+        half_v = glide(n, half_v);
+        prev_v = glide(n, prev_v);
+    }
+    for (uint k = c.touch_first; k < c.touch_end; k++) {
+        const ris_contact_touch t = contact_touch[k];
+        const float body = touch_body(t.body, at, t.limit_mm, n);
+        if (body > 0.0) {
+            at = at + body * n;
+            half_v = glide(n, half_v);
+            prev_v = glide(n, prev_v);
+        }
+    }
+    position[c.node] = vec4(at, x.w);
+    velocity_half[c.node] = vec4(half_v, 0.0);
+    velocity_prev[c.node] = vec4(prev_v, 0.0);
+}
