@@ -7,9 +7,11 @@
 
 #include <stdlib.h>
 
-#define REACH_MM 5.0    /* deeper than this is no lip but another part of the mouth */
-#define BEHIND 0.1      /* share of the sphere from which on its sign counts; 0.5 just behind a plane */
-#define ON_FEATURE 1e-7 /* barycentric share below which a closest point lies on an edge or vertex */
+#define REACH_MM 5.0 /* deeper than this is no lip but another part of the mouth */
+#define BEHIND 0.1   /* share of the sphere from which on its sign counts; 0.5 just behind a plane ... */
+#define BEHIND_PER_MM 0.06 /* ... and so much more per mm: deep inside a lip it is all around */
+#define OPPOSED (-0.3)     /* cosine below which two normals face each other */
+#define ON_FEATURE 1e-7    /* barycentric share below which a closest point lies on an edge or vertex */
 
 static bool all_of(const bool *flag, const uint32_t *v)
 {
@@ -165,8 +167,11 @@ static double depth_in(const ris_sheet *sheet, const bvh *tree, dvec p, dvec nor
     if (!hit.found || hit.distance > REACH_MM || !pseudonormal(sheet, tree->mesh, &hit, &n)) {
         return 0;
     }
-    const bool behind = dv_dot(dv_sub(p, hit.at), n) < 0 && dv_dot(normal, n) < 0;
-    return behind && share_of_sphere(tree->mesh, p) > BEHIND ? hit.distance : 0;
+    const bool behind = dv_dot(dv_sub(p, hit.at), n) < 0 && dv_dot(dv_unit(normal), dv_unit(n)) < OPPOSED;
+    if (!behind || share_of_sphere(tree->mesh, p) < BEHIND + BEHIND_PER_MM * hit.distance) {
+        return 0;
+    }
+    return hit.distance;
 }
 
 /* Depth of every node of sheet s in the other (node_count of the sheet). */
