@@ -309,7 +309,8 @@ static float slope(const ris_grid_place *place, const float *value, const uint32
     const size_t own = at[0] + at[1] * stride[1] + at[2] * stride[2];
     const size_t before = at[axis] > 0 ? own - stride[axis] : own;
     const size_t after = at[axis] + 1 < place->count[axis] ? own + stride[axis] : own;
-    return (value[after] - value[before]) / (float)((after - before) / stride[axis]);
+    const size_t steps = (after - before) / stride[axis]; /* 2, or 1 at an end */
+    return (value[after] - value[before]) / (float)steps;
 }
 
 void ris__grid_directions(const ris_grid_place *place, const float *value, ris_vec4 *out)
