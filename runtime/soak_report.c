@@ -272,7 +272,7 @@ void soak_print_json(const soak *run)
         if (row->bounded) {
             printf("\"bound\": %.9g, ", row->bound);
         }
-        printf("\"at_rest\": %.9g, \"worst\": [",
+        printf("\"worst_single\": %.9g, \"at_rest\": %.9g, \"worst\": [", row->single.finding.value,
                k < RIS_MEASURE_COUNT ? ris__measurer_rest(run->measurer, (ris_measure)k)->value : 0.0);
         for (uint32_t i = 0; i < row->worst_count; i++) {
             printf("%s\n      ", i ? "," : "");
