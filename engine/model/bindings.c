@@ -19,6 +19,10 @@
 #define SMALLEST_FACING 1e-3f /* of a vertex that a list binds though it faces away */
 #define TWIN_MM 1e-3f
 
+#define HANGS_MM 5.0f   /* the red of a lip hangs as a whole on the skin that levators and depressors hold */
+#define BORDER_MM 8.0f  /* from the skin beside the lip to where it does */
+#define CORNER_MM 18.0f /* from the corner of the mouth to where they move the lip in full */
+
 enum { LIP_UPPER = 1, LIP_LOWER = 2 };
 
 /* Where a node meets a segment's flat sheet. */
@@ -45,6 +49,8 @@ typedef struct binder {
     const float *arc;     /* arc-length parameter of each fibre point */
     uint8_t *lip;         /* per node: LIP_UPPER, LIP_LOWER bits */
     uint8_t *muscle_lip;
+    float *corner_mm;     /* per node: to the nearest corner of the mouth */
+    float *border_mm;     /* per node of a lip: to the skin beside it */
     bool *lining;         /* per node: the mouth's lining, which follows the lips */
     uint8_t *muscle_node; /* explicit attach lists (muscle_count x node_count), NULL if none */
     size_t binding_room, attach_room;
@@ -199,7 +205,11 @@ static ris_result bind_blended(binder *b, uint32_t m, uint32_t node, ris_error *
     }
     /* a stored list (KA-44) decides alone who is bound, so that no borderline vertex comes or goes */
     const bool listed = !muscle->def->attach_auto;
-    const float beyond = f_max(list[0].distance - list[0].depth, 0.0f);
+    const bool lifts_lip = muscle->kind == RIS_MUSCLE_LINEAR && b->muscle_lip[m] != 0;
+    float beyond = f_max(list[0].distance - list[0].depth, 0.0f);
+    if (lifts_lip && b->lip[node]) {
+        beyond = f_max(beyond - HANGS_MM * f_smoothstep(b->border_mm[node] / BORDER_MM), 0.0f);
+    }
     if (!(beyond < muscle->radius_mm) && !listed) {
         return RIS_OK;
     }
@@ -218,10 +228,17 @@ static ris_result bind_blended(binder *b, uint32_t m, uint32_t node, ris_error *
         facing += list[k].share * list[k].facing;
         above += list[k].share * list[k].above;
     }
+    if (lifts_lip && b->lip[node]) {
+        facing = FACING_FULL;
+        above = ABOVE_FULL;
+    }
     const float ratio = f_min(beyond / muscle->radius_mm, 1.0f), bell = 1.0f - ratio * ratio;
     float weight = bell * bell * f_clamp(facing / FACING_FULL, 0.0f, 1.0f);
     if (b->lip[node] && muscle->kind == RIS_MUSCLE_SPHINCTER) {
         weight = 1.0f; /* the red of a lip is rolled round the muscle within it */
+    }
+    if (lifts_lip) {
+        weight *= f_smoothstep(b->corner_mm[node] / CORNER_MM);
     }
     if (muscle->kind == RIS_MUSCLE_LINEAR) {
         float start = muscle->insertion_start;
@@ -317,12 +334,42 @@ static uint32_t nearest_node(const ris_model *model, ris_vec3 p)
     return nearest;
 }
 
+/* Distance of every node to the corners of the mouth, the nodes of both lips, and of lips to the skin around. */
+static void measure_lips(binder *b)
+{
+    const ris_model *model = b->bake->model;
+    for (uint32_t i = 0; i < model->node_count; ++i) {
+        b->corner_mm[i] = CORNER_MM;
+    }
+    for (uint32_t c = 0; c < model->node_count; ++c) {
+        for (uint32_t i = 0; b->lip[c] == (LIP_UPPER | LIP_LOWER) && i < model->node_count; ++i) {
+            const float d = v3_distance(v4_xyz(model->rest_position[i]), v4_xyz(model->rest_position[c]));
+            b->corner_mm[i] = f_min(b->corner_mm[i], d);
+        }
+    }
+    for (uint32_t i = 0; i < model->node_count; ++i) {
+        b->border_mm[i] = b->lip[i] ? BORDER_MM : 0.0f;
+        for (uint32_t k = 0; b->lip[i] && k < model->node_count; ++k) {
+            if (!b->lip[k] && !b->lining[k] && model->rest_position[k].w > 0.0f) {
+                b->border_mm[i] = f_min(b->border_mm[i], v3_distance(v4_xyz(model->rest_position[i]),
+                                                                     v4_xyz(model->rest_position[k])));
+            }
+        }
+    }
+}
+
 /* Lips and lining of the nodes by region; lips of a muscle by the nodes nearest to its grid. */
 static ris_result sort_lips(binder *b, ris_error *err)
 {
     const ris_model *model = b->bake->model;
     const ris_head *head = b->bake->head;
     ris_result result = ris__model_alloc(&b->lip, model->node_count, sizeof *b->lip, "lip flags", err);
+    if (result == RIS_OK) {
+        result = ris__model_alloc(&b->border_mm, model->node_count, sizeof *b->border_mm, "lip flags", err);
+    }
+    if (result == RIS_OK) {
+        result = ris__model_alloc(&b->corner_mm, model->node_count, sizeof *b->corner_mm, "lip flags", err);
+    }
     if (result == RIS_OK) {
         result = ris__model_alloc(&b->lining, model->node_count, sizeof *b->lining, "lip flags", err);
     }
@@ -343,6 +390,7 @@ static ris_result sort_lips(binder *b, ris_error *err)
     for (uint32_t k = 0; lower && k < lower->count; ++k) {
         b->lip[lower->vertex[k]] |= LIP_LOWER;
     }
+    measure_lips(b);
     for (uint32_t m = 0; m < model->muscle_count; ++m) {
         const ris_muscle_def *def = model->muscle[m].def;
         uint32_t votes[2] = {0};
@@ -484,6 +532,8 @@ ris_result ris__bake_bindings(ris_bake *bake, ris_error *err)
     free(b.lip);
     free(b.muscle_lip);
     free(b.lining);
+    free(b.corner_mm);
+    free(b.border_mm);
     free(b.muscle_node);
     return result;
 }
