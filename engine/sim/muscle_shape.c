@@ -1,7 +1,7 @@
 /* Muscles as they are shown: KA-25 segments with their present frames and extents, in skull space. The default tissue
  * moves muscles in closed-jaw space and turns the skin's targets with the jaw; what is shown turns with it: a control
  * point by the mean jaw weight of the skin the muscle holds there, its fixed end with its bone. Points of a ring round
- * the lids or the mouth go where lids and corners of the mouth take their skin. */
+ * the lids go where the lids take their skin. */
 #include "sim/rig.h"
 
 #include "model/model_impl.h"
@@ -11,6 +11,7 @@
 
 #define NEAR_MM 3.0f    /* skin this near to a control point counts fully */
 #define LID_MM 1.0f     /* the same for lids, which turn by very different angles from row to row */
+#define LID_FROM 0.5f   /* share of the length of a lid's lifter from which on it goes with the lid */
 #define BONE_UNTIL 0.5f /* share of a fibre's length along which its bone lets go */
 
 /* Weight of a node bound to a muscle, seen from one of its control points. */
@@ -19,15 +20,6 @@ static float nearness(const ris_binding *binding, ris_vec3 point, ris_vec3 node,
     const ris_vec3 d = v3_sub(point, node);
     const float s = v3_dot(d, d) + near_mm * near_mm;
     return binding->weight / (s * s);
-}
-
-/* Muscles that hold no skin hang between bones: their ends are on skull and mandible. */
-static void hang_between_bones(const ris_muscle *muscle, uint32_t first, float *weight)
-{
-    for (uint32_t i = 0; i < muscle->point_count; ++i) {
-        const float t = (float)i / (float)(muscle->point_count - 1);
-        weight[first + i] = muscle->on_jaw ? 1.0f - t : t;
-    }
 }
 
 /* From the bone of the first row to that of the last, by the way along the fibre; the ends go with their bones. */
@@ -77,13 +69,10 @@ ris_result ris__muscle_jaw_weights(const ris_model *model, float *weight, ris_er
                 hang_on_both(model, muscle, first, weight);
                 continue;
             }
-            if (!(sum[first] > 0.0f)) {
-                hang_between_bones(muscle, first, weight);
-                continue;
-            }
             for (uint32_t i = 0; i < muscle->point_count; ++i) {
                 const float t = (float)i / (float)(muscle->point_count - 1),
-                            skin = weight[first + i] / sum[first + i], bone = muscle->on_jaw ? 1.0f : 0.0f;
+                            bone = muscle->on_jaw ? 1.0f : 0.0f,
+                            skin = sum[first + i] > 0.0f ? weight[first + i] / sum[first + i] : bone;
                 weight[first + i] = muscle->kind == RIS_MUSCLE_LINEAR
                                         ? bone + f_smoothstep(t / BONE_UNTIL) * (skin - bone)
                                         : skin;
@@ -94,18 +83,20 @@ ris_result ris__muscle_jaw_weights(const ris_model *model, float *weight, ris_er
     return RIS_OK;
 }
 
-/* What the corners of the mouth drag a ring by at t (0 first end, 1 last), mm. */
-static ris_vec3 dragged(const ris_rig *rig, uint32_t m, float t)
+/* How much of a lid's node muscle m holds: as it is bound to the skin, or all of the upper lid that it lifts. */
+static float holds_lid(const ris_model *model, uint32_t m, const ris_lid_node *lid, ris_vec3 point,
+                       ris_vec3 rest)
 {
-    ris_vec3 sum = {0};
-    for (uint32_t end = 0; end < 2; ++end) {
-        const ris_drag *drag = &rig->drag[2 * (size_t)m + end];
-        const float u = end ? 2.0f * t - 1.0f : 1.0f - 2.0f * t;
-        if (drag->strength > 0.0f && u > 0.0f) {
-            sum = v3_mad(sum, drag->strength * ris__power(u, drag->power), drag->displacement);
+    const ris_binding whole = {.weight = 1.0f};
+    if (lid->upper && model->muscle[m].lid_eye == lid->eye + 1) {
+        return nearness(&whole, point, rest, LID_MM);
+    }
+    for (uint32_t b = model->binding_start[lid->node]; b < model->binding_start[lid->node + 1]; ++b) {
+        if (model->binding[b].muscle == m) {
+            return nearness(&model->binding[b], point, rest, LID_MM);
         }
     }
-    return sum;
+    return 0.0f;
 }
 
 /* What the lids take their skin by beside muscles and jaw, near a control point of muscle m, mm. */
@@ -115,15 +106,11 @@ static ris_vec3 lid_carry(const ris_rig *rig, uint32_t m, ris_vec3 point)
     ris_vec3 sum = {0};
     float total = 0.0f;
     for (uint32_t k = 0; k < model->lid_count; ++k) {
-        const uint32_t i = model->lid[k].node;
-        for (uint32_t b = model->binding_start[i]; b < model->binding_start[i + 1]; ++b) {
-            if (model->binding[b].muscle == m && !model->lid[k].lining) {
-                const ris_vec3 rest = v4_xyz(model->rest_position[i]);
-                const float s = nearness(&model->binding[b], point, rest, LID_MM);
-                sum = v3_mad(sum, s, v3_sub(v3_sub(rig->target[i], rest), rig->lid_move[k]));
-                total += s;
-            }
-        }
+        const ris_lid_node *lid = &model->lid[k];
+        const ris_vec3 rest = v4_xyz(model->rest_position[lid->node]);
+        const float s = lid->lining ? 0.0f : holds_lid(model, m, lid, point, rest);
+        sum = v3_mad(sum, s, v3_sub(v3_sub(rig->target[lid->node], rest), rig->lid_move[k]));
+        total += s;
     }
     const ris_vec3 none = {0};
     return total > 0.0f ? v3_scale(sum, 1.0f / total) : none;
@@ -144,14 +131,14 @@ static void place_points(const ris_rig *rig, uint32_t m, ris_vec3 *point)
         const uint32_t first = model->fiber[muscle->first_fiber + f].first_point;
         for (uint32_t i = 0; i < muscle->point_count; ++i) {
             ris_vec3 p = rig->q[first + i];
-            if (!kaehler && muscle->kind == RIS_MUSCLE_SPHINCTER) {
-                p = v3_add(p, dragged(rig, m, (float)i / (float)(muscle->point_count - 1)));
-            }
             if (!kaehler) {
                 p = v3_lerp(p, ris__rigid_apply(&rig->jaw, p), rig->muscle_jaw[first + i]);
             }
-            if (muscle->def->closes_on_line) {
-                p = v3_add(p, lid_carry(rig, m, model->fiber_point[first + i]));
+            const float t = (float)i / (float)(muscle->point_count - 1);
+            if (muscle->def->closes_on_line || (muscle->lid_eye != 0 && t > LID_FROM)) {
+                const float share =
+                    muscle->lid_eye != 0 ? f_smoothstep((t - LID_FROM) / (1.0f - LID_FROM)) : 1.0f;
+                p = v3_mad(p, share, lid_carry(rig, m, model->fiber_point[first + i]));
             }
             point[first + i] = p;
         }

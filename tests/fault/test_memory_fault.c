@@ -143,6 +143,16 @@ static ris_result run_draw(ris_error *err)
     if (result == RIS_OK) {
         result = ris_draw_frame(draw, cpu, &camera, err);
     }
+    if (result == RIS_OK) {
+        result = ris_draw_set_layers(draw, (1u << RIS_LAYER_COUNT) - 1, err);
+    }
+    if (result == RIS_OK) {
+        result = ris_draw_frame(draw, cpu, &camera, err);
+    }
+    if (result == RIS_OK) {
+        static uint32_t map[16 * 16];
+        result = ris_draw_muscle_map(draw, cpu, &camera, 16, 16, map, err);
+    }
     ris_draw_destroy(draw);
     return result;
 }

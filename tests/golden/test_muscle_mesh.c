@@ -218,6 +218,88 @@ static void muscles_turn_with_the_jaw(void **state)
     }
 }
 
+static uint32_t muscle_named(const ris_model *model, const char *name)
+{
+    for (uint32_t m = 0; m < model->muscle_count; m++) {
+        if (strcmp(model->muscle[m].name, name) == 0) {
+            return m;
+        }
+    }
+    fail_msg("there is no muscle %s", name);
+    return 0;
+}
+
+/* How far point `row` of a muscle, counted through its fibres, has come from rest, mm, after a tick with a pose of one
+ * channel. */
+static ris_vec3 shown_move(const ris_model *model, const char *channel, const char *muscle, uint32_t row)
+{
+    ris_error err = {0};
+    ris_sim *sim;
+    float *pose = calloc(model->channel_count, sizeof *pose);
+    ris_vec3 *point = calloc(model->fiber_point_count, sizeof *point);
+    ris_segment *segment = calloc(model->segment_count, sizeof *segment);
+    assert_true(pose && point && segment && ris_model_channel(model, channel) != UINT32_MAX);
+    pose[ris_model_channel(model, channel)] = 1.0f;
+    GOOD(ris_sim_create_cpu(model, &sim, &err));
+    GOOD(ris_sim_tick(sim, pose, &err));
+    ris_sim_muscles(sim, point, segment);
+    const uint32_t at =
+        model->fiber[model->muscle[muscle_named(model, muscle)].first_fiber].first_point + row;
+    const ris_vec3 move = v3_sub(point[at], model->fiber_point[at]);
+    GOOD(ris_sim_reset(sim, &err)); /* a reset takes everything back */
+    ris_sim_muscles(sim, point, segment);
+    assert_true(v3_distance(point[at], model->fiber_point[at]) < 1e-6f);
+    ris_sim_destroy(sim);
+    free(pose);
+    free(point);
+    free(segment);
+    return move;
+}
+
+/* On the reference head: the ring of the lower lip goes down with the jaw and the upper one stays; both follow a pulled
+ * corner, that of their side only; the ring of the lids and the lifter's end go down with a lid that closes, on its own side. */
+static void rings_follow_jaw_corner_and_lid(void **state)
+{
+    (void)state;
+    ris_error err = {0};
+    ris_model *model;
+    GOOD(ris_model_load(RIS_SOURCE_DIR "/assets/human", &model, &err));
+    const uint32_t lower = muscle_named(model, "orbicularis_oris_inferior"),
+                   middle = model->muscle[lower].point_count / 2;
+    const float down = -shown_move(model, "jaw.open", "orbicularis_oris_inferior", middle).y;
+    assert_true(down > 20.0f);
+    assert_true(fabsf(shown_move(model, "jaw.open", "orbicularis_oris_superior", middle).y) < 0.15f * down);
+    const uint32_t last = model->muscle[muscle_named(model, "orbicularis_oris_superior")].point_count - 1;
+    const ris_vec3 pulled = shown_move(model, "zygomaticus_major.L", "orbicularis_oris_superior", last);
+    assert_true(pulled.x > 2.0f && pulled.y > 2.0f); /* out and up: the last row is on the subject's left */
+    assert_true(v3_length(shown_move(model, "zygomaticus_major.L", "orbicularis_oris_superior", 0)) < 0.01f);
+    /* what holds neither skin nor jaw stays with the skull */
+    const uint32_t lifter = muscle_named(model, "levator_palpebrae_superioris.L"),
+                   end = model->muscle[lifter].point_count - 1;
+    assert_true(v3_length(shown_move(model, "jaw.open", "levator_palpebrae_superioris.L", end)) < 0.01f);
+    float lid = 0.0f;
+    for (uint32_t f = 0; f < model->muscle[lifter].fiber_count; f++) {
+        lid = f_max(lid, -shown_move(model, "lid.upper.L", "levator_palpebrae_superioris.L",
+                                     f * model->muscle[lifter].point_count + end)
+                              .y);
+    }
+    print_message("the lifter's end comes down by %.2f mm\n", (double)lid);
+    assert_true(lid > 1.0f);
+    assert_true(v3_length(shown_move(model, "lid.upper.L", "levator_palpebrae_superioris.L", 0)) < 0.01f);
+    const ris_muscle *ring = &model->muscle[muscle_named(model, "orbicularis_oculi_palpebral.L")];
+    const uint32_t n = ring->point_count * ring->fiber_count;
+    float most = 0.0f, other = 0.0f;
+    for (uint32_t row = 0; row < n; row++) {
+        most = f_max(most, -shown_move(model, "lid.upper.L", "orbicularis_oculi_palpebral.L", row).y);
+        other =
+            f_max(other, v3_length(shown_move(model, "lid.upper.L", "orbicularis_oculi_palpebral.R", row)));
+    }
+    print_message("the ring of the lid comes down by %.2f mm, that of the other by %.4f\n", (double)most,
+                  (double)other);
+    assert_true(most > 2.0f && other < 0.01f);
+    ris_model_destroy(model);
+}
+
 static void points_are_projected(void **state)
 {
     (void)state;
@@ -233,9 +315,8 @@ static void points_are_projected(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bodies_are_closed_and_outward),
-        cmocka_unit_test(sections_are_the_segments),
-        cmocka_unit_test(muscles_turn_with_the_jaw),
+        cmocka_unit_test(bodies_are_closed_and_outward), cmocka_unit_test(sections_are_the_segments),
+        cmocka_unit_test(muscles_turn_with_the_jaw),     cmocka_unit_test(rings_follow_jaw_corner_and_lid),
         cmocka_unit_test(points_are_projected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
