@@ -1,4 +1,4 @@
-/* Muscles as closed bodies for drawing (KA-25): one for each muscle, its section spans all fibres side by side with the
+/* Muscles as closed bodies for drawing, not the shapes of KA-25: one for each muscle, its section spans all fibres side by side with the
  * width and height of their segments, its ends are rounded. Knows no Vulkan. */
 #pragma once
 

@@ -1,4 +1,4 @@
-/* Muscles as they are shown: KA-25 segments with their present frames and extents, in skull space. The default tissue
+/* Muscles as they are shown: KA-24 segments with their present frames (KA-37) and extents, in skull space. The default tissue
  * moves muscles in closed-jaw space and turns the skin's targets with the jaw; what is shown turns with it: a control
  * point by the mean jaw weight of the skin the muscle holds there, its fixed end with its bone. Points of a ring round
  * the lids go where the lids take their skin. */
