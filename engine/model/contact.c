@@ -15,6 +15,9 @@
 #define MARGIN_MM 8.0f     /* of a grid around what its meshes and the moving skin have in common */
 #define BONE_CLEAR_MM 1.2f /* the least tissue over bone: skin without its fat */
 #define TEETH_CLEAR_MM 0.3f
+#define LINING_CLEAR_MM                                                                                      \
+    1.5f                    /* of the lining of the mouth from both: its edges are long, the ridges narrow; */
+#define LINING_ROOM_MM 6.0f /* not where it lies so near to both jaws: it would be squeezed */
 #define EYE_CLEAR_MM 0.2f
 #define SLACK_MM 0.01f /* rest stays a fixed point in spite of rounding */
 #define BONE_REACH_MM                                                                                        \
@@ -204,15 +207,34 @@ static float reach(const ris_contact_solid *solid)
     return is_eye(solid) ? EYE_REACH_MM : solid->bone == RIS_BONE_JAW ? JAW_REACH_MM : BONE_REACH_MM;
 }
 
-static float clearance(const ris_contact_solid *solid)
+static float clearance(const ris_contact_solid *solid, bool lining)
 {
     return is_eye(solid)                           ? EYE_CLEAR_MM
+           : lining                                ? LINING_CLEAR_MM
            : strncmp(solid->name, "teeth", 5) == 0 ? TEETH_CLEAR_MM
                                                    : BONE_CLEAR_MM;
 }
 
+/* Lining with room: farther than LINING_ROOM_MM from one of the two jaws. */
+static bool has_room(const ris_model *model, uint32_t i)
+{
+    float nearest[2] = {INFINITY, INFINITY};
+    for (uint32_t k = 0; k < model->contact_solid_count; ++k) {
+        const ris_contact_solid *solid = &model->contact_solid[k];
+        const ris_grid_place place = place_of(solid);
+        ris_vec4 at;
+        if (!is_eye(solid) && ris__grid_sample(model->contact_grid + solid->first, &place,
+                                               v4_xyz(model->rest_position[i]), &at)) {
+            float *d = &nearest[solid->bone == RIS_BONE_JAW];
+            *d = f_min(*d, at.w);
+        }
+    }
+    return f_max(nearest[0], nearest[1]) > LINING_ROOM_MM;
+}
+
 /* Least distance of node i from a body, or false if it cannot come near. */
-static bool body_limit(const ris_model *model, const ris_contact_solid *solid, uint32_t i, float *out)
+static bool body_limit(const ris_model *model, const ris_contact_solid *solid, uint32_t i, bool lining,
+                       float *out)
 {
     const ris_grid_place place = place_of(solid);
     ris_vec4 at;
@@ -221,7 +243,7 @@ static bool body_limit(const ris_model *model, const ris_contact_solid *solid, u
         return false;
     }
     const float d = at.w;
-    *out = f_min(clearance(solid), d - SLACK_MM);
+    *out = f_min(clearance(solid, lining), d - SLACK_MM);
     return d > 0.0f ||
            !is_eye(solid); /* the lids' lining runs through the eye, and lid_pose holds it stiffly */
 }
@@ -322,13 +344,13 @@ static ris_result list_pairs(ris_model *model, const uint8_t *lip, ris_contact_n
     return result;
 }
 
-static ris_result list_touches(ris_model *model, ris_contact_node *contact, ris_error *err)
+static ris_result list_touches(ris_model *model, bool lining, ris_contact_node *contact, ris_error *err)
 {
     ris_result result = RIS_OK;
     contact->touch_first = model->contact_touch_count;
     for (uint32_t k = 0; k < model->contact_solid_count && result == RIS_OK; ++k) {
         float limit;
-        if (body_limit(model, &model->contact_solid[k], contact->node, &limit)) {
+        if (body_limit(model, &model->contact_solid[k], contact->node, lining, &limit)) {
             result =
                 reserve(&model->contact_touch, model->contact_touch_count, sizeof *model->contact_touch, err);
             if (result == RIS_OK) {
@@ -355,7 +377,7 @@ static int compare_work(const void *a, const void *b)
     return p->node < q->node ? -1 : p->node > q->node;
 }
 
-static ris_result list_nodes(ris_bake *bake, const uint8_t *lip, ris_error *err)
+static ris_result list_nodes(ris_bake *bake, const uint8_t *lip, const bool *lining, ris_error *err)
 {
     ris_model *model = bake->model;
     ris_result result = RIS_OK;
@@ -366,7 +388,7 @@ static ris_result list_nodes(ris_bake *bake, const uint8_t *lip, ris_error *err)
         }
         result = list_pairs(model, lip, &contact, err);
         if (result == RIS_OK) {
-            result = list_touches(model, &contact, err);
+            result = list_touches(model, lining[i] && has_room(model, i), &contact, err);
         }
         if (result == RIS_OK &&
             (contact.lip_end > contact.lip_first || contact.touch_end > contact.touch_first)) {
@@ -411,15 +433,21 @@ ris_result ris__bake_contact(ris_bake *bake, ris_error *err)
         return RIS_OK;
     }
     uint8_t *lip = NULL;
+    bool *lining = NULL;
     model->push.lip_radius_mm = LIP_RADIUS_MM;
     ris_result result = add_bodies(bake, err);
     if (result == RIS_OK) {
         result = sort_lips(bake, &lip, err);
     }
     if (result == RIS_OK) {
-        result = list_nodes(bake, lip, err);
+        result = ris__model_alloc(&lining, model->node_count, sizeof *lining, "the lining of the mouth", err);
+    }
+    if (result == RIS_OK) {
+        ris__region_flags(bake->head, "mouth_cavity", lining);
+        result = list_nodes(bake, lip, lining, err);
     }
     free(lip);
+    free(lining);
     model->push.contact_node_count = model->contact_node_count;
     for (uint32_t k = 0; k < model->contact_node_count; ++k) { /* sorted: they come first */
         model->push.lip_node_count += model->contact_node[k].lip_end > model->contact_node[k].lip_first;

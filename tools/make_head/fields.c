@@ -114,16 +114,18 @@ static void build_depth(maker *m)
         s->depth_mm[i] = clamp(s->depth_mm[i], limits[0], limits[1]);
 }
 
+/* Holds the value; 2 marks a firm one, which later smoothing leaves alone. */
 static void hold(const maker *m, json_t *entry, uint8_t *held)
 {
     skin const *s = &m->skin;
     double value = recipe_number(entry, "value");
     const char *name = json_string_value(json_object_get(entry, "region"));
+    const uint8_t mark = json_is_true(json_object_get(entry, "firm")) ? 2 : 1;
     if (name) {
         const region *r = region_find(s, name);
         for (uint32_t i = 0; i < s->vertex_count; i++)
             if (r->has[i]) {
-                held[i] = 1;
+                held[i] = mark;
                 s->jaw_weight[i] = value;
             }
         return;
@@ -134,7 +136,7 @@ static void hold(const maker *m, json_t *entry, uint8_t *held)
     for (uint32_t r = range[0]; r <= range[1] && r < m->mouth.count; r++)
         for (uint32_t c = columns[0]; c <= columns[1] && c < m->mouth.at[r].count; c++) {
             uint32_t i = s->index_of[m->mouth.at[r].vertex[c]];
-            held[i] = held[s->mirror[i]] = 1;
+            held[i] = held[s->mirror[i]] = mark;
             s->jaw_weight[i] = s->jaw_weight[s->mirror[i]] = value;
         }
 }
@@ -149,7 +151,9 @@ static void build_jaw(maker *m)
     for (size_t k = 0; k < json_array_size(list); k++)
         hold(m, json_array_get(list, k), held);
     relax(m, s->jaw_weight, held, recipe_index(rule, "harmonic_passes"));
-    relax(m, s->jaw_weight, NULL, recipe_index(rule, "smoothing_passes"));
+    for (uint32_t i = 0; i < s->vertex_count; i++)
+        held[i] = held[i] == 2;
+    relax(m, s->jaw_weight, held, recipe_index(rule, "smoothing_passes"));
     for (uint32_t i = 0; i < s->vertex_count; i++)
         s->jaw_weight[i] = smoothstep(0, 1, s->jaw_weight[i]) * recipe_number(rule, "smoothstep") +
                            clamp(s->jaw_weight[i], 0, 1) * (1 - recipe_number(rule, "smoothstep"));
