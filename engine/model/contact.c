@@ -377,7 +377,7 @@ static int compare_work(const void *a, const void *b)
     return p->node < q->node ? -1 : p->node > q->node;
 }
 
-static ris_result list_nodes(ris_bake *bake, const uint8_t *lip, const bool *lining, ris_error *err)
+static ris_result list_nodes(ris_bake *bake, const uint8_t *lip, ris_error *err)
 {
     ris_model *model = bake->model;
     ris_result result = RIS_OK;
@@ -388,7 +388,7 @@ static ris_result list_nodes(ris_bake *bake, const uint8_t *lip, const bool *lin
         }
         result = list_pairs(model, lip, &contact, err);
         if (result == RIS_OK) {
-            result = list_touches(model, lining[i] && has_room(model, i), &contact, err);
+            result = list_touches(model, bake->lining[i] && has_room(model, i), &contact, err);
         }
         if (result == RIS_OK &&
             (contact.lip_end > contact.lip_first || contact.touch_end > contact.touch_first)) {
@@ -433,21 +433,15 @@ ris_result ris__bake_contact(ris_bake *bake, ris_error *err)
         return RIS_OK;
     }
     uint8_t *lip = NULL;
-    bool *lining = NULL;
     model->push.lip_radius_mm = LIP_RADIUS_MM;
     ris_result result = add_bodies(bake, err);
     if (result == RIS_OK) {
         result = sort_lips(bake, &lip, err);
     }
     if (result == RIS_OK) {
-        result = ris__model_alloc(&lining, model->node_count, sizeof *lining, "the lining of the mouth", err);
-    }
-    if (result == RIS_OK) {
-        ris__region_flags(bake->head, "mouth_cavity", lining);
-        result = list_nodes(bake, lip, lining, err);
+        result = list_nodes(bake, lip, err);
     }
     free(lip);
-    free(lining);
     model->push.contact_node_count = model->contact_node_count;
     for (uint32_t k = 0; k < model->contact_node_count; ++k) { /* sorted: they come first */
         model->push.lip_node_count += model->contact_node[k].lip_end > model->contact_node[k].lip_first;

@@ -29,12 +29,11 @@ static bool faces(const ris_bake *bake, uint32_t triangle, ris_vec3 normal)
     return dv_dot(ris__tri_normal(&bake->skin, triangle), to_double(normal)) >= (double)FACING;
 }
 
-bool ris__project_on_skin(const ris_bake *bake, ris_vec3 p, ris_vec3 normal, ris_vec3 *out)
+/* Folds of the lining of the mouth face the cheek from within: no skin that a muscle could lie above. */
+static bool in_lining(const ris_bake *bake, uint32_t triangle)
 {
-    const bvh_hit hit = ris__bvh_closest_facing(&bake->skin_tree, to_double(p), to_double(normal),
-                                                (double)FACING, (double)FARTHEST_MM);
-    *out = to_float(hit.at);
-    return hit.found;
+    const uint32_t *v = bake->skin.triangle + 3 * (size_t)triangle;
+    return bake->lining && bake->lining[v[0]] && bake->lining[v[1]] && bake->lining[v[2]];
 }
 
 /* First triangle along direction that faces along normal; its distance, or NAN. */
@@ -48,13 +47,27 @@ static double ray_facing(const ris_bake *bake, ris_vec3 p, ris_vec3 direction, r
         if (!hit.found) {
             return NAN;
         }
-        if (faces(bake, hit.triangle, normal)) {
+        const bool down = v3_dot(direction, normal) < 0.0f;
+        if (faces(bake, hit.triangle, normal) && !(down && in_lining(bake, hit.triangle))) {
             *triangle = hit.triangle;
             return hit.distance;
         }
         from = hit.distance + 1e-6;
     }
     return NAN;
+}
+
+bool ris__project_on_skin(const ris_bake *bake, ris_vec3 p, ris_vec3 normal, ris_vec3 *out)
+{
+    const bvh_hit hit = ris__bvh_closest_facing(&bake->skin_tree, to_double(p), to_double(normal),
+                                                (double)FACING, (double)FARTHEST_MM);
+    *out = to_float(hit.at);
+    if (hit.found && in_lining(bake, hit.triangle)) { /* straight up, then */
+        uint32_t triangle;
+        const double up = ray_facing(bake, p, normal, normal, &triangle);
+        *out = up < INFINITY ? v3_mad(p, (float)up, normal) : *out;
+    }
+    return hit.found;
 }
 
 float ris__depth_along(const ris_bake *bake, ris_vec3 p, ris_vec3 normal, uint32_t *triangle)
@@ -69,15 +82,15 @@ float ris__depth_along(const ris_bake *bake, ris_vec3 p, ris_vec3 normal, uint32
     return (float)(above ? -in : out);
 }
 
-/* Of the nearest vertex. Deep in the cheek the lining of the mouth may be the nearer surface: the vote of the whole grid
- * in ris__grid_normals decides. */
+/* Of the nearest vertex of the outer skin: deep in the cheek the lining of the mouth, which looks the other way, may be
+ * nearer. */
 static ris_vec3 skin_normal_near(const ris_bake *bake, ris_vec3 p)
 {
     uint32_t nearest = 0;
     float best = INFINITY;
     for (uint32_t i = 0; i < bake->model->node_count; ++i) {
         const ris_vec3 d = v3_sub(bake->head->skin.position[i], p);
-        if (v3_dot(d, d) < best) {
+        if (v3_dot(d, d) < best && !(bake->lining && bake->lining[i])) {
             best = v3_dot(d, d);
             nearest = i;
         }

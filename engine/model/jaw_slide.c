@@ -13,9 +13,10 @@
 
 /* The lining of the mouth behind the rim of the lips is bound to its bone: over RIM_EDGES edges it gives up the smoothed
  * weight for its own. done counts them (0 outside, or not yet reached). */
-static void bind_lining(const ris_bake *bake, const bool *lining, uint32_t *done)
+static void bind_lining(const ris_bake *bake, uint32_t *done)
 {
     ris_model *model = bake->model;
+    const bool *lining = bake->lining;
     for (uint32_t edges = 1; edges <= RIM_EDGES; ++edges) {
         for (uint32_t i = 0; i < model->node_count; ++i) {
             for (uint32_t h = model->spring_start[i];
@@ -31,24 +32,6 @@ static void bind_lining(const ris_bake *bake, const bool *lining, uint32_t *done
             model->jaw_slide_weight[i] += own * (bake->head->jaw_weight[i] - model->jaw_slide_weight[i]);
         }
     }
-}
-
-static ris_result find_lining(const ris_bake *bake, bool **lining, uint32_t **done, ris_error *err)
-{
-    const uint32_t n = bake->model->node_count;
-    ris_result result = ris__model_alloc(lining, 2 * (size_t)n, sizeof **lining, "jaw weights", err);
-    if (result == RIS_OK) {
-        result = ris__model_alloc(done, n, sizeof **done, "jaw weights", err);
-    }
-    if (result == RIS_OK) {
-        bool *rim = *lining + n;
-        ris__region_flags(bake->head, "mouth_cavity", *lining);
-        ris__region_flags(bake->head, "inner_lip_rim", rim);
-        for (uint32_t i = 0; i < n; ++i) {
-            (*lining)[i] = (*lining)[i] && !rim[i];
-        }
-    }
-    return result;
 }
 
 ris_result ris__bake_jaw_slide(ris_bake *bake, ris_error *err)
@@ -82,13 +65,11 @@ ris_result ris__bake_jaw_slide(ris_bake *bake, ris_error *err)
         model->jaw_slide_weight[i] =
             f_max((model->jaw_slide_weight[i] - FAR_WEIGHT) / (1.0f - FAR_WEIGHT), 0.0f);
     }
-    bool *lining = NULL;
     uint32_t *done = NULL;
-    result = find_lining(bake, &lining, &done, err);
+    result = ris__model_alloc(&done, n, sizeof *done, "jaw weights", err);
     if (result == RIS_OK) {
-        bind_lining(bake, lining, done);
+        bind_lining(bake, done);
     }
-    free(lining);
     free(done);
     free(before);
     return result;

@@ -31,6 +31,7 @@ static void bake_finish(ris_bake *bake)
     free(bake->ring_triangle);
     free(bake->triangle_area);
     free(bake->moving);
+    free(bake->lining);
     free(bake->muscle_weight);
     for (uint32_t m = 0; bake->grid && m < bake->head->muscle_count; ++m) {
         ris__grid_finish(&bake->grid[m]);

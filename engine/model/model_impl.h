@@ -23,9 +23,11 @@ typedef struct ris_bake {
     uint32_t *ring_triangle; /* triangle of each ring entry (3 x triangle_count) */
     float *triangle_area;    /* mm^2 (triangle_count) */
     bool *moving;            /* in the simulated region (node_count) */
-    float *muscle_weight;    /* largest binding weight, 0..1 (node_count) */
-    ris_bake_grid *grid;     /* (muscle_count) */
-    tri_mesh skin;           /* the model's triangles, and boxes over them */
+    bool *
+        lining; /* of the mouth, behind the rim of the lips: mouth_cavity without inner_lip_rim (node_count) */
+    float *muscle_weight; /* largest binding weight, 0..1 (node_count) */
+    ris_bake_grid *grid;  /* (muscle_count) */
+    tri_mesh skin;        /* the model's triangles, and boxes over them */
     bvh skin_tree;
 } ris_bake;
 

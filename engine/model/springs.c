@@ -12,12 +12,20 @@ ris_result ris__bake_mass(ris_bake *bake, ris_error *err)
     const uint32_t n = model->node_count;
     ris_result result = ris__model_alloc(&bake->moving, n, sizeof *bake->moving, "node flags", err);
     if (result == RIS_OK) {
+        result = ris__model_alloc(&bake->lining, n, sizeof *bake->lining, "node flags", err);
+    }
+    if (result == RIS_OK) {
         result = ris__model_alloc(&model->rest_position, n, sizeof *model->rest_position, "positions", err);
     }
     if (result != RIS_OK) {
         return result;
     }
     ris__region_flags(bake->head, bake->head->simulated, bake->moving);
+    ris__region_flags(bake->head, "mouth_cavity", bake->lining);
+    const ris_region *rim = ris_head_region(bake->head, "inner_lip_rim");
+    for (uint32_t k = 0; rim && k < rim->count; ++k) {
+        bake->lining[rim->vertex[k]] = false;
+    }
     model->mass_g = tissue->mass_g;
     if (tissue->model == RIS_TISSUE_KAEHLER) {
         double area_mm2 = 0.0;

@@ -86,7 +86,7 @@ static void a_worst_pose_can_be_had_alone(void **state)
     assert_non_null(root);
     assert_int_equal(json_integer_value(json_object_get(json_object_get(root, "poses"), "done")), 11);
     assert_false(json_boolean_value(json_object_get(root, "interrupted")));
-    json_t *worst = worst_of(root, "mandible, vertices");
+    json_t *worst = worst_of(root, "mandible, midpoints");
     const double value = json_real_value(json_object_get(worst, "value"));
     assert_true(value > 0);
     char line[8192];
@@ -95,7 +95,7 @@ static void a_worst_pose_can_be_had_alone(void **state)
     expect(line, 0, NULL);
     json_t *alone = json_loads(run.out, JSON_REJECT_DUPLICATES, &error);
     assert_non_null(alone);
-    json_t *again = worst_of(alone, "mandible, vertices");
+    json_t *again = worst_of(alone, "mandible, midpoints");
     assert_true(json_real_value(json_object_get(again, "value")) == value);
     assert_int_equal(json_integer_value(json_array_get(json_object_get(again, "vertices"), 0)),
                      json_integer_value(json_array_get(json_object_get(worst, "vertices"), 0)));

@@ -222,8 +222,9 @@ static void contact_keeps_apart(void **state)
         {"orbicularis_oris_superior=1,orbicularis_oris_inferior=1,mentalis=1,incisivus_labii_superioris=1,"
          "incisivus_labii_inferioris=1",
          RIS_MEASURE_LIPS, 0.8},
-        {"jaw.side=1,orbicularis_oris_superior=1", RIS_MEASURE_LOWER_TEETH, 1.0},
-        {"jaw.open=1,risorius=1", RIS_MEASURE_UPPER_TEETH, 0.8},
+        {"jaw.forward=1", RIS_MEASURE_LOWER_TEETH, 1.0},
+        {"orbicularis_oris_superior=1,incisivus_labii_superioris=1,jaw.open=0.3", RIS_MEASURE_UPPER_TEETH,
+         0.8},
     };
     ris_measurer *measurer = NULL;
     ris_finding found[RIS_MEASURE_COUNT];

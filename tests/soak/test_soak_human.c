@@ -24,22 +24,20 @@ typedef struct held {
 static const held table[] = {
     {"not finite", 0, 0, ""},
     {"skull, vertices", 0.5, 0, ""},
-    {"skull, midpoints", 1, 1.5,
-     "lining on the skull follows the jaw (weights 0.07 to 0.12), in edges of 14 mm"},
+    {"skull, midpoints", 1, 0, ""},
     {"upper teeth, vertices", 0.5, 0, ""},
-    {"upper teeth, midpoints", 1, 1.9, "lining beside the crowns follows the jaw (weights 0.25 to 0.29)"},
-    {"mandible, vertices", 0.5, 1.3, "lining on the jaw (weight 0.88) slides less far than the jaw"},
-    {"mandible, midpoints", 1, 5.5,
-     "lining of the throat lies on the jaw with weights of 0.19 to 0.38, in edges of 19 mm"},
+    {"upper teeth, midpoints", 1, 0, ""},
+    {"mandible, vertices", 0.5, 0, ""},
+    {"mandible, midpoints", 1, 0, ""},
     {"lower teeth, vertices", 0.5, 0, ""},
-    {"lower teeth, midpoints", 1, 3.4,
-     "lining beside the crowns with weights of 0.53 to 0.93, in edges of 10 mm"},
+    {"lower teeth, midpoints", 1, 1.9,
+     "edges of the inner rim of the lower lip over the canine, all muscles at once"},
     {"eyes, vertices", 0.5, 0, ""},
     {"eyes, midpoints", 1, 0, ""},
     {"lip in lip", 0.5, 0, ""},
     {"lid in lid", 0.5, 0, ""},
     {"mirror", 0.05, 0, ""},
-    {"not at rest", 0.1, 3.5, "lining that two bones push"},
+    {"not at rest", 0.1, 0, ""},
 };
 #define FLIPPED_SHARE 0.0001
 #define FLIPPED_SINGLE 2 /* triangles; 0 is wanted: the corners of closed lids */
@@ -136,7 +134,7 @@ static void few_triangles_turn_over(void **state)
 static void a_bound_of_nothing_is_broken(void **state)
 {
     (void)state;
-    const held strict[] = {{"mandible, vertices", 1e-6, 0, ""}, {"mirror", 1e-9, 0, ""}};
+    const held strict[] = {{"mandible, midpoints", 1e-6, 0, ""}, {"mirror", 1e-9, 0, ""}};
     assert_int_equal(broken(strict, 2, false), 2);
 }
 

@@ -42,11 +42,19 @@ static near_body ask(const bvh *body, dvec p)
     return inside ? (near_body){-l, dv(-u.x, -u.y, -u.z)} : (near_body){l, u};
 }
 
-/* Sum of the pushes out of all bodies that are nearer than clear. */
-static dvec push_at(const lining *l, dvec p, double clear, bool tongue)
+enum {
+    OFF_BONE = 1 << BODY_SKULL | 1 << BODY_MANDIBLE,
+    OFF_TEETH = 1 << BODY_UPPER | 1 << BODY_LOWER,
+    OFF_TONGUE = 1 << BODY_TONGUE
+};
+
+/* Sum of the pushes out of those bodies that are nearer than clear. */
+static dvec push_at(const lining *l, dvec p, double clear, unsigned bodies)
 {
     dvec sum = {0};
-    for (int k = 0; k < BODY_TONGUE + (tongue ? 1 : 0); k++) {
+    for (int k = 0; k < BODY_COUNT; k++) {
+        if (!(bodies & 1u << k))
+            continue;
         const double want = k == BODY_TONGUE ? TONGUE_MM : clear;
         const near_body near = ask(&l->body[k], p);
         if (near.distance_mm < want)
@@ -76,7 +84,8 @@ static void slide_out(lining *l, uint32_t i)
     static const double share[] = {1, 0.8, 0.4};
     double aside = 0;
     dvec p = l->from[i];
-    for (int step = 0; step < SIDE_STEPS && dv_length(push_at(l, p, SIDE_CLEAR_MM, false)) > 0; step++) {
+    for (int step = 0; step < SIDE_STEPS && dv_length(push_at(l, p, SIDE_CLEAR_MM, OFF_BONE | OFF_TEETH)) > 0;
+         step++) {
         aside += SIDE_STEP_MM;
         p.x += SIDE_STEP_MM;
     }
@@ -129,16 +138,27 @@ static void smooth(lining *l, double oral, bool by_place, dvec *next)
         l->at[i] = next[i];
 }
 
+/* What an edge keeps off: one that crosses the gums only the crowns, beside the last molars nothing. */
+static unsigned bodies_of(const lining *l, uint32_t a, uint32_t b)
+{
+    if (!lining_joined(l, a, b))
+        return l->ring[a] <= SIDE_RING && l->ring[b] <= SIDE_RING ? OFF_TEETH : 0;
+    return OFF_BONE | OFF_TEETH | (l->outside[a] || l->outside[b] ? 0 : OFF_TONGUE);
+}
+
 static void push(lining *l, dvec *shift, double share)
 {
     for (uint32_t i = 0; i < l->count; i++)
-        shift[i] = left(l, i) ? push_at(l, l->at[i], CLEAR_MM, !l->outside[i]) : dv(0, 0, 0);
+        shift[i] = left(l, i) ? push_at(l, l->at[i], CLEAR_MM,
+                                        OFF_BONE | OFF_TEETH | (l->outside[i] ? 0 : OFF_TONGUE))
+                              : dv(0, 0, 0);
     for (uint32_t e = 0; e < l->edge_count; e++) {
         const uint32_t a = l->edge[e][0], b = l->edge[e][1];
+        const unsigned bodies = bodies_of(l, a, b);
         for (int q = 1; q < 4; q++) {
             const double t = 0.25 * q;
             const dvec p = dv_mad(l->at[a], t, dv_sub(l->at[b], l->at[a])),
-                       out = push_at(l, p, EDGE_CLEAR_MM, !l->outside[a] && !l->outside[b]);
+                       out = push_at(l, p, EDGE_CLEAR_MM, bodies);
             const double d = dv_length(out);
             if (d > 0) {
                 shift[a] = dv_mad(shift[a], 0.5 * (1 - t), out);
@@ -212,6 +232,8 @@ lining_report lining_measure(const lining *l)
     }
     for (uint32_t e = 0; e < l->edge_count; e++) {
         const uint32_t a = l->edge[e][0], b = l->edge[e][1];
+        if (!lining_joined(l, a, b))
+            continue;
         const double d = least(l, dv_mad(l->at[a], 0.5, dv_sub(l->at[b], l->at[a])));
         r.buried_midpoints += d < 0;
         if (d < r.midpoint_mm) {

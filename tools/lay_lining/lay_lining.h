@@ -25,8 +25,7 @@ typedef struct lining {
     uint32_t *start, *other;   /* CSR of neighbours along the edges of faces (count + 1) */
     dvec *from, *cast_at, *at; /* in the file; after the rays; now (count) */
     uint32_t edge_count;
-    uint32_t (*edge)
-        [2]; /* edges and both diagonals with a moving end on the left that stay on one side of the teeth */
+    uint32_t (*edge)[2]; /* edges and both diagonals with a moving end, on the left */
 } lining;
 
 /* rings.c */
@@ -41,7 +40,7 @@ ris_result lining_lay(lining *l, ris_error *err);
 
 typedef struct lining_report {
     double vertex_mm,
-        midpoint_mm; /* least distance of a moving vertex, of a midpoint of edge, from bone and teeth; < 0 inside */
+        midpoint_mm; /* least distance from bone and teeth, < 0 inside; of a midpoint of an edge between joined vertices */
     uint32_t vertex, edge[2]; /* where */
     uint32_t buried, buried_midpoints;
     double moved_mm; /* farthest */

@@ -149,7 +149,7 @@ static void find_sides(lining *l)
 
 static void add_edge(lining *l, uint32_t a, uint32_t b)
 {
-    if ((l->moves[a] || l->moves[b]) && lining_joined(l, a, b) && l->from[a].x >= 0 && l->from[b].x >= 0) {
+    if ((l->moves[a] || l->moves[b]) && l->from[a].x >= 0 && l->from[b].x >= 0) {
         l->edge[l->edge_count][0] = a;
         l->edge[l->edge_count++][1] = b;
     }
