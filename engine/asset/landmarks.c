@@ -1,4 +1,5 @@
-/* landmarks.json: named points on skin, skull and mandible (KA-07; docs/skull.md, docs/file-formats.md). */
+/* landmarks.json: named points on skin, skull and mandible (KA-07; docs/skull.md, docs/file-formats.md), and the pose they
+ * define (KA-08). */
 #include "asset/head_parts.h"
 
 #include <math.h>
@@ -26,9 +27,13 @@ static ris_result read_place(const ris_json_at *at, const ris_head *head, ris_la
         (result = ris__json_floats(&place, RIS_JSON_REQUIRED, 3, -1e6, 1e6, given, err))) {
         return result;
     }
-    if (fabsf(out->weight[0] + out->weight[1] + out->weight[2] - 1.0f) > 1e-4f) {
+    const float total = (out->weight[0] + out->weight[1]) + out->weight[2];
+    if (!(fabsf(total - 1.0f) <= 1e-4f)) {
         return ris__json_fail(&weights, err, "expected three weights of sum 1, found a sum of %g",
-                              (double)(out->weight[0] + out->weight[1] + out->weight[2]));
+                              (double)total);
+    }
+    for (uint32_t k = 0; k < 3; k++) { /* what rounding left would lift the point off its triangle */
+        out->weight[k] /= total;
     }
     ris_vec3 sum = {0};
     for (uint32_t k = 0; k < 3; k++) {
@@ -139,4 +144,67 @@ const ris_landmark *ris_head_landmark(const ris_head *head, const char *name, bo
         }
     }
     return NULL;
+}
+
+static ris_result find_points(const ris_head *head, double out[4][3], ris_error *err)
+{
+    static const char *const name[4] = {"po.L", "po.R", "or.L", "or.R"};
+    for (int k = 0; k < 4; k++) {
+        const ris_landmark *landmark = ris_head_landmark(head, name[k], false);
+        if (!landmark) {
+            return ris_fail(err, RIS_ERROR_DATA,
+                            "the head has no landmark %s, which the Frankfort horizontal needs", name[k]);
+        }
+        out[k][0] = (double)landmark->at.x;
+        out[k][1] = (double)landmark->at.y;
+        out[k][2] = (double)landmark->at.z;
+    }
+    return RIS_OK;
+}
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* Makes v a unit vector; false if it has no length to speak of (mm). */
+static bool make_unit(double v[3])
+{
+    const double length = sqrt(dot(v, v));
+    for (int k = 0; k < 3; k++) {
+        v[k] = length > 0 ? v[k] / length : 0;
+    }
+    return length > 1e-3;
+}
+
+ris_result ris_head_frankfort(const ris_head *head, double out[12], ris_error *err)
+{
+    double p[4][3], x[3], y[3], z[3], middle[3];
+    ris_result result = find_points(head, p, err);
+    if (result != RIS_OK) {
+        return result;
+    }
+    for (int k = 0; k < 3; k++) {
+        middle[k] = 0.5 * (p[0][k] + p[1][k]);
+        x[k] = p[0][k] - p[1][k];
+        z[k] = 0.5 * (p[2][k] + p[3][k]) - middle[k];
+    }
+    bool plane = make_unit(x);
+    const double along = dot(x, z);
+    for (int k = 0; k < 3; k++) {
+        z[k] -= along * x[k];
+    }
+    plane = make_unit(z) && plane;
+    if (!plane) {
+        return ris_fail(err, RIS_ERROR_DATA, "the landmarks po.L, po.R, or.L and or.R span no plane");
+    }
+    y[0] = z[1] * x[2] - z[2] * x[1];
+    y[1] = z[2] * x[0] - z[0] * x[2];
+    y[2] = z[0] * x[1] - z[1] * x[0];
+    const double *const row[3] = {x, y, z};
+    for (int r = 0; r < 3; r++) {
+        memcpy(out + 4 * r, row[r], 3 * sizeof *out);
+        out[4 * r + 3] = -dot(row[r], middle);
+    }
+    return RIS_OK;
 }

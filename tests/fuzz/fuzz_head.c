@@ -1,5 +1,5 @@
 /* The readers behind head.json. The first byte picks one: r regions, m muscles, t tissue, j jaw, e
- * expressions, d depth.csv, k skin.map, g guidance.csv. The skin is a fan of 8 vertices. */
+ * expressions, d depth.csv, k skin.map, g guidance.csv, l landmarks. The skin is a fan of 8 vertices. */
 #include "fuzz.h"
 
 #include "asset/head_parts.h"
@@ -27,6 +27,7 @@ static ris_result read_text(char kind, const char *text, size_t size, ris_head *
         case 'r': result = ris__regions_read(&json, head, err); break;
         case 'm': result = ris__muscles_read(&json, head, err); break;
         case 't': result = ris__tissue_read(&root, head, err); break;
+        case 'l': result = ris__landmarks_read(&json, head, err); break;
         case 'j': result = ris__jaw_read(&root, head, err); break;
         default: result = ris__head_expressions_read(&json, head, err); break;
         }
@@ -50,11 +51,18 @@ static void check_muscle(const ris_muscle_def *m)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
+    static const ris_vec3 position[VERTICES] = {{0, 0, 0}, {1, 0, 0},  {1, 1, 0},
+                                                {0, 1, 0}, {-1, 1, 0}, {-1, 0, 0}};
     ris_head head = {.skin.vertex_count = VERTICES};
     ris_error err = {0};
-    if (size == 0 || !strchr("rmtjedkg", data[0]) || data[0] == 0) {
+    if (size == 0 || !strchr("rmtjedkgl", data[0]) || data[0] == 0) {
         return 0;
     }
+    head.skin.position = malloc(sizeof position); /* freed with the head */
+    if (!head.skin.position) {
+        return 0;
+    }
+    memcpy(head.skin.position, position, sizeof position);
     ris_result result = read_text((char)data[0], (const char *)data + 1, size - 1, &head, &err);
     fuzz_check_error(result, &err);
     for (uint32_t i = 0; result == RIS_OK && i < head.muscle_count; i++) {

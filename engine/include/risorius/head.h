@@ -213,6 +213,11 @@ const ris_region *ris_head_region(const ris_head *head, const char *name);
 /* Landmark by name, on bone or on the skin, or NULL. */
 const ris_landmark *ris_head_landmark(const ris_head *head, const char *name, bool on_bone);
 
+/* KA-08: the rigid movement (row-major 3x4, mm) that puts the head into the Frankfort horizontal by its skin landmarks
+ * po.L, po.R, or.L, or.R: x through the porions, the mean orbitale as high as the middle between the porions, which
+ * becomes the origin. RIS_ERROR_DATA: a landmark is missing, or the four span no plane. */
+ris_result ris_head_frankfort(const ris_head *head, double out[12], ris_error *err);
+
 /* Strict OBJ reader (v, vt, f, quads kept). On failure *out is zeroed. */
 ris_result ris_mesh_load_obj(const char *path, ris_mesh *out, ris_error *err);
 /* Same from memory; name stands for the file in errors. */
