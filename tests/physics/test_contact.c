@@ -156,7 +156,7 @@ static void a_push_is_what_it_should_be(void **state)
                      .bone_anchor = &anchor,
                      .jaw_weight = &weight,
                      .channel = channel,
-                     .contact_node = &node,
+                     .fiber_point = &anchor, .contact_node = &node,
                      .contact_touch = &touch,
                      .contact_grid = grid,
                      .contact_node_count = 1,
