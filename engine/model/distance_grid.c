@@ -96,13 +96,18 @@ static void splat(const ris_grid_place *place, const ris_vec3 t[3], float *out)
         !axis_range(place->low.z, place->cell_mm, place->count[2], low.z, high.z, rz)) {
         return;
     }
+    const ris_vec3 normal =
+        v3_unit_or(v3_cross(v3_sub(t[1], t[0]), v3_sub(t[2], t[0])), v3(0.0f, 0.0f, 0.0f));
     for (uint32_t z = rz[0]; z <= rz[1]; ++z) {
         for (uint32_t y = ry[0]; y <= ry[1]; ++y) {
             float *row = out + ((size_t)z * place->count[1] + y) * place->count[0];
             for (uint32_t x = rx[0]; x <= rx[1]; ++x) {
                 const ris_vec3 p = sample_at(place, x, y, z);
-                const ris_vec3 d = v3_sub(p, closest_on_triangle(p, t[0], t[1], t[2]));
-                row[x] = f_min(row[x], v3_dot(d, d));
+                const float off = v3_dot(normal, v3_sub(p, t[0])); /* of its plane: no nearer than that */
+                if (off * off < f_min(row[x], band * band)) {
+                    const ris_vec3 d = v3_sub(p, closest_on_triangle(p, t[0], t[1], t[2]));
+                    row[x] = f_min(row[x], v3_dot(d, d));
+                }
             }
         }
     }
