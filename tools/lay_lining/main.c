@@ -23,6 +23,7 @@ typedef struct job {
     tri_mesh mesh[BODY_COUNT];
     bvh tree[BODY_COUNT];
     lining lining;
+    bool laid; /* by this run */
 } job;
 
 static ris_result parse_arguments(job *j, int argc, char **argv, ris_error *err)
@@ -64,14 +65,14 @@ static double shown(double x)
 }
 
 /* Copies skin.obj line by line; the n-th "v" line is the n-th vertex. */
-static void copy_lines(FILE *out, const char *text, const lining *l)
+static void copy_lines(FILE *out, const char *text, const lining *l, bool laid)
 {
     uint32_t vertex = 0;
     for (const char *line = text; *line;) {
         const char *end = strchr(line, '\n');
         const size_t length = end ? (size_t)(end - line) + 1 : strlen(line);
         const bool is_vertex = strncmp(line, "v ", 2) == 0;
-        if (is_vertex && vertex < l->count && l->moves[vertex]) {
+        if (laid && is_vertex && vertex < l->count && l->moves[vertex]) {
             const dvec p = l->at[vertex];
             fprintf(out, "v %.6f %.6f %.6f\n", shown(p.x), shown(p.y), shown(p.z));
         } else
@@ -101,7 +102,7 @@ static ris_result write_skin(const job *j, ris_error *err)
     FILE *out = read ? fopen(part, "wb") : NULL;
     bool good = out != NULL;
     if (out) {
-        copy_lines(out, text, &j->lining);
+        copy_lines(out, text, &j->lining, j->laid);
         good = !ferror(out);
         good = fclose(out) == 0 && good && rename(part, to) == 0;
     }
@@ -125,6 +126,7 @@ static ris_result run(job *j, ris_error *err)
     print("before", &r);
     if (r.vertex_mm < LAID_MM || r.midpoint_mm < 0) {
         result = lining_lay(&j->lining, err);
+        j->laid = true;
         r = lining_measure(&j->lining);
         print("laid", &r);
     }
