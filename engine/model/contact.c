@@ -14,7 +14,7 @@
 #define EYE_CELL_MM 1.5f
 #define MARGIN_MM 8.0f     /* of a grid around what its meshes and the moving skin have in common */
 #define BONE_CLEAR_MM 1.2f /* the least tissue over bone: skin without its fat */
-#define TEETH_CLEAR_MM 0.3f
+#define TEETH_CLEAR_MM 0.8f
 #define LINING_CLEAR_MM                                                                                      \
     1.5f                    /* of the lining of the mouth from both: its edges are long, the ridges narrow; */
 #define LINING_ROOM_MM 6.0f /* not where it lies so near to both jaws: it would be squeezed */

@@ -30,7 +30,7 @@ static const held table[] = {
     {"mandible, vertices", 0.5, 0, ""},
     {"mandible, midpoints", 1, 0, ""},
     {"lower teeth, vertices", 0.5, 0, ""},
-    {"lower teeth, midpoints", 1, 1.9,
+    {"lower teeth, midpoints", 1, 1.6,
      "edges of the inner rim of the lower lip over the canine, all muscles at once"},
     {"eyes, vertices", 0.5, 0, ""},
     {"eyes, midpoints", 1, 0, ""},
