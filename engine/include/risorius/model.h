@@ -184,7 +184,7 @@ typedef struct ris_model {
     uint32_t *contact_other;          /* nodes of the other lip (contact_pair_count) */
     ris_vec3 *bone_anchor;            /* KA-14: point on the bone below the node at rest, mm (node_count) */
     const float *jaw_weight;          /* (node_count) */
-    float *jaw_slide_weight;              /* the same for slides of the jaw; NULL = jaw_weight (node_count) */
+    float *jaw_slide_weight;          /* the same for slides of the jaw; NULL = jaw_weight (node_count) */
 
     double bake_ms,
         muscle_bake_ms; /* what ris_model_create took, and its part from muscle grids to bindings */
