@@ -48,9 +48,10 @@ static void measure(const uint32_t *map, uint32_t width, uint32_t height, uint32
     }
     for (size_t i = 0; i < (size_t)width * height; i++) {
         if (map[i] < count) {
+            const size_t column = i % width, row = i / width;
             sight[map[i]].seen_px++;
-            sum[2 * (size_t)map[i]] += (double)(i % width);
-            sum[2 * (size_t)map[i] + 1] += (double)(i / width);
+            sum[2 * (size_t)map[i]] += (double)column;
+            sum[2 * (size_t)map[i] + 1] += (double)row;
         }
     }
     for (uint32_t reach = 7; reach > 1; reach -= 2) { /* well inside where there is such a place */
@@ -94,9 +95,10 @@ static ris_result look_alone(ris_draw *draw, const ris_sim *sim, const ris_camer
         double x = 0, y = 0;
         for (size_t i = 0; !r && i < (size_t)width * height; i++) {
             if (alone[i] == m) {
+                const size_t column = i % width, row = i / width;
                 sight[m].whole_px++;
-                x += (double)(i % width);
-                y += (double)(i / width);
+                x += (double)column;
+                y += (double)row;
                 if (map[i] != m && map[i] < count) {
                     cover[(size_t)m * count + map[i]]++;
                 }
