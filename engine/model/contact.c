@@ -15,13 +15,14 @@
 #define MARGIN_MM 8.0f     /* of a grid around what its meshes and the moving skin have in common */
 #define BONE_CLEAR_MM 1.2f /* the least tissue over bone: skin without its fat */
 #define TEETH_CLEAR_MM 0.8f
-#define LINING_CLEAR_MM                                                                                      \
-    1.5f                    /* of the lining of the mouth from both: its edges are long, the ridges narrow; */
-#define LINING_ROOM_MM 6.0f /* not where it lies so near to both jaws: it would be squeezed */
+/* The lining of the mouth keeps farther off both: its edges are long and the ridges narrow. But not where it lies nearer
+ * than LINING_ROOM_MM to both jaws: it would be squeezed. */
+#define LINING_CLEAR_MM 1.5f
+#define LINING_ROOM_MM 6.0f
 #define EYE_CLEAR_MM 0.2f
 #define SLACK_MM 0.01f /* rest stays a fixed point in spite of rounding */
-#define BONE_REACH_MM                                                                                        \
-    15.0f /* a body farther from a node at rest is never asked: tissue moves so far over it */
+/* A body farther than this from a node at rest is never asked: tissue does not move so far. */
+#define BONE_REACH_MM 15.0f
 #define JAW_REACH_MM 22.0f
 #define EYE_REACH_MM 6.0f
 
@@ -31,9 +32,9 @@
 #define LIP_APART_MM 0.1f  /* lips in contact keep this far apart, or as far as at rest */
 #define LIP_BEHIND_MM 0.2f /* a pair that lies farther behind each other at rest never meets face to face */
 #define LIP_CORNER_EDGES 3 /* nor one this near on the mesh: there the lips join in the corner */
+#define LIP_FACING 0.5f    /* nor one whose normals agree more than this */
 #define LIP_CORNER_MM 8.0f /* so near the corner of the mouth the lips are one fold of flesh, ... */
 #define LIP_FOLD_MM 1.0f   /* ... which may press into itself so deep at the corner */
-#define LIP_FACING 0.5f    /* nor one whose normals agree more than this */
 
 enum { LIP_NONE, LIP_UPPER = 1, LIP_LOWER = 2, LIP_BOTH = 3 };
 

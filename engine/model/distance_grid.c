@@ -340,22 +340,26 @@ static ris_vec4 blend(ris_vec4 a, ris_vec4 b, float t)
     return r;
 }
 
-bool ris__grid_sample(const ris_vec4 *grid, const ris_grid_place *place, ris_vec3 p, ris_vec4 *out)
+bool ris__grid_blend(const ris_vec4 *grid, ris_vec3 low, float per_mm, const uint32_t count[3], ris_vec3 p,
+                     ris_vec4 *out)
 {
-    const float per_mm = 1.0f / place->cell_mm;
-    const ris_vec3 q =
-        v3((p.x - place->low.x) * per_mm, (p.y - place->low.y) * per_mm, (p.z - place->low.z) * per_mm);
-    if (!(q.x >= 0.0f && q.x < (float)(place->count[0] - 1) && q.y >= 0.0f &&
-          q.y < (float)(place->count[1] - 1) && q.z >= 0.0f && q.z < (float)(place->count[2] - 1))) {
+    const ris_vec3 q = v3((p.x - low.x) * per_mm, (p.y - low.y) * per_mm, (p.z - low.z) * per_mm);
+    if (!(q.x >= 0.0f && q.x < (float)(count[0] - 1) && q.y >= 0.0f && q.y < (float)(count[1] - 1) &&
+          q.z >= 0.0f && q.z < (float)(count[2] - 1))) {
         return false;
     }
     const uint32_t x = (uint32_t)q.x, y = (uint32_t)q.y, z = (uint32_t)q.z;
     const float fx = q.x - (float)x, fy = q.y - (float)y, fz = q.z - (float)z;
-    const size_t row = place->count[0], slice = row * place->count[1];
+    const size_t row = count[0], slice = row * count[1];
     const ris_vec4 *v = grid + (z * slice + y * row + x);
     const ris_vec4 near = blend(blend(v[0], v[1], fx), blend(v[row], v[row + 1], fx), fy);
     const ris_vec4 far =
         blend(blend(v[slice], v[slice + 1], fx), blend(v[slice + row], v[slice + row + 1], fx), fy);
     *out = blend(near, far, fz);
     return true;
+}
+
+bool ris__grid_sample(const ris_vec4 *grid, const ris_grid_place *place, ris_vec3 p, ris_vec4 *out)
+{
+    return ris__grid_blend(grid, place->low, 1.0f / place->cell_mm, place->count, p, out);
 }

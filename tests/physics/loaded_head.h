@@ -68,6 +68,20 @@ static inline void free_head(void)
     free(mirror);
 }
 
+/* Group fixtures of a test program that needs nothing but the head. */
+static inline int open_loaded_head(void **state)
+{
+    (void)state;
+    return load_head();
+}
+
+static inline int close_loaded_head(void **state)
+{
+    (void)state;
+    free_head();
+    return 0;
+}
+
 /* Resets, settles with pose and reads the positions; the time it took, s. */
 static inline double settle(void)
 {

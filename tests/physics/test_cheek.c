@@ -6,19 +6,6 @@
 
 #include <math.h>
 
-static int open_head(void **state)
-{
-    (void)state;
-    return load_head();
-}
-
-static int close_head(void **state)
-{
-    (void)state;
-    free_head();
-    return 0;
-}
-
 static void hold(const char *text)
 {
     need(ris_pose_parse(model, text, pose, &err));
@@ -131,5 +118,5 @@ int main(void)
         cmocka_unit_test(a_held_corner_holds_the_fat),
         cmocka_unit_test(the_buccinator_presses_the_cheek),
     };
-    return cmocka_run_group_tests(tests, open_head, close_head);
+    return cmocka_run_group_tests(tests, open_loaded_head, close_loaded_head);
 }

@@ -2,6 +2,7 @@
  * positions before contact, so the order of nodes means nothing. Order: docs/physics.md. */
 #include "sim/cpu/cpu_stage.h"
 
+#include "model/distance_grid.h"
 #include "model/model_impl.h"
 #include "model/vec3.h"
 
@@ -46,34 +47,6 @@ static void touch_lip(const ris_cpu_state *state, const ris_contact_node *contac
     push_off(t, v3(away.x / l, away.y / l, away.z / l), share * (limit - d));
 }
 
-static ris_vec4 blend(ris_vec4 a, ris_vec4 b, float t)
-{
-    const ris_vec4 r = {a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), a.z + t * (b.z - a.z),
-                        a.w + t * (b.w - a.w)};
-    return r;
-}
-
-/* The body's grid at p of its rest frame; false outside it. */
-static bool sample(const ris_vec4 *grid, const ris_contact_body *body, ris_vec3 p, ris_vec4 *out)
-{
-    const float per_mm = body->low.w;
-    const ris_vec3 q =
-        v3((p.x - body->low.x) * per_mm, (p.y - body->low.y) * per_mm, (p.z - body->low.z) * per_mm);
-    if (!(q.x >= 0.0f && q.x < (float)(body->count_x - 1) && q.y >= 0.0f &&
-          q.y < (float)(body->count_y - 1) && q.z >= 0.0f && q.z < (float)(body->count_z - 1))) {
-        return false;
-    }
-    const uint32_t x = (uint32_t)q.x, y = (uint32_t)q.y, z = (uint32_t)q.z;
-    const float fx = q.x - (float)x, fy = q.y - (float)y, fz = q.z - (float)z;
-    const uint32_t row = body->count_x, slice = row * body->count_y;
-    const ris_vec4 *v = grid + (body->first + z * slice + y * row + x);
-    const ris_vec4 near = blend(blend(v[0], v[1], fx), blend(v[row], v[row + 1], fx), fy);
-    const ris_vec4 far =
-        blend(blend(v[slice], v[slice + 1], fx), blend(v[slice + row], v[slice + row + 1], fx), fy);
-    *out = blend(near, far, fz);
-    return true;
-}
-
 static void touch_body(const ris_vec4 *grid, const ris_contact_body *body, float limit, touch *t)
 {
     const ris_vec4 rx = body->row_x, ry = body->row_y, rz = body->row_z;
@@ -81,8 +54,10 @@ static void touch_body(const ris_vec4 *grid, const ris_contact_body *body, float
     const ris_vec3 p =
         v3(((rx.x * x.x + rx.y * x.y) + rx.z * x.z) + rx.w, ((ry.x * x.x + ry.y * x.y) + ry.z * x.z) + ry.w,
            ((rz.x * x.x + rz.y * x.y) + rz.z * x.z) + rz.w);
+    const uint32_t count[3] = {body->count_x, body->count_y, body->count_z};
     ris_vec4 g;
-    if (!sample(grid, body, p, &g) || !(g.w < limit)) {
+    if (!ris__grid_blend(grid + body->first, v4_xyz(body->low), body->low.w, count, p, &g) ||
+        !(g.w < limit)) {
         return;
     }
     const ris_vec3 w = v3((rx.x * g.x + ry.x * g.y) + rz.x * g.z, (rx.y * g.x + ry.y * g.y) + rz.y * g.z,
