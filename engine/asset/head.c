@@ -97,12 +97,12 @@ static ris_result read_head(const ris_json *json, ris_head *head, ris_error *err
     static const char *const keys[] = {"format", "version", "units",     "skin",        "map",
                                        "color",  "regions", "simulated", "skull",       "mandible",
                                        "depth",  "muscles", "landmarks", "expressions", "parts",
-                                       "jaw",    "tissue",  "guidance",  NULL};
+                                       "jaw",    "tissue",  "guidance",  "dynamics",    NULL};
     static const char *const units_known[] = {"mm", NULL};
     ris_json_at root = ris__json_root(json);
     ris_json_at units = ris__json_key(&root, "units"), color = ris__json_key(&root, "color");
     ris_json_at parts = ris__json_key(&root, "parts"), jaw = ris__json_key(&root, "jaw");
-    ris_json_at tissue = ris__json_key(&root, "tissue");
+    ris_json_at tissue = ris__json_key(&root, "tissue"), dynamics = ris__json_key(&root, "dynamics");
     uint32_t unit;
     ris_result result;
     if ((result = ris__json_check_format(&root, "risorius-head", 1, err)) ||
@@ -119,6 +119,7 @@ static ris_result read_head(const ris_json *json, ris_head *head, ris_error *err
         (result = ris__jaw_read(&jaw, head, err)) ||
         (result = read_text(&root, "guidance", RIS_JSON_OPTIONAL, ris__guidance_read, head, err)) ||
         (result = ris__tissue_read(&tissue, head, err)) ||
+        (result = ris__dynamics_read(&dynamics, head, err)) ||
         (result = read_json(&root, "muscles", RIS_JSON_REQUIRED, ris__muscles_read, head, err)) ||
         (result = read_json(&root, "landmarks", RIS_JSON_OPTIONAL, ris__landmarks_read, head, err)) ||
         (result =

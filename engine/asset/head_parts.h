@@ -8,6 +8,9 @@
 ris_result ris__regions_read(const ris_json *json, ris_head *head, ris_error *err);
 /* Skin and bones must be there. */
 ris_result ris__landmarks_read(const ris_json *json, ris_head *head, ris_error *err);
+/* dynamics object of head.json; before the muscles, which take its times where they have none. */
+ris_result ris__dynamics_read(const ris_json_at *at, ris_head *head, ris_error *err);
+#define RIS_MAX_PACE_MS 2000
 ris_result ris__muscles_read(const ris_json *json, ris_head *head, ris_error *err);
 ris_result ris__tissue_read(const ris_json_at *at, ris_head *head, ris_error *err);
 ris_result ris__jaw_read(const ris_json_at *at, ris_head *head, ris_error *err);

@@ -14,12 +14,32 @@
 #define MIN_SEGMENT_MM 1e-3
 #define TEXT_SIZE 1024
 
-static const char *const record_keys[] = {
-    "name",           "mirror_of",    "kind",           "bone",      "grid",
-    "axis",           "thickness_mm", "max_shortening", "attach",    "au",
-    "origin",         "insertion",    "source",         "radius_mm", "insertion_start",
-    "lip_drag_power", "gain",         "closes",         "end_bone",  "drives",
-    "acts_on",        "fat",          "fat_radius_mm",  NULL};
+static const char *const record_keys[] = {"name",
+                                          "mirror_of",
+                                          "kind",
+                                          "bone",
+                                          "grid",
+                                          "axis",
+                                          "thickness_mm",
+                                          "max_shortening",
+                                          "attach",
+                                          "au",
+                                          "origin",
+                                          "insertion",
+                                          "source",
+                                          "radius_mm",
+                                          "insertion_start",
+                                          "lip_drag_power",
+                                          "gain",
+                                          "closes",
+                                          "end_bone",
+                                          "drives",
+                                          "acts_on",
+                                          "fat",
+                                          "fat_radius_mm",
+                                          "onset_ms",
+                                          "release_ms",
+                                          NULL};
 
 static double distance(const ris_vec3 *a, const ris_vec3 *b)
 {
@@ -263,8 +283,23 @@ static ris_result read_acts_on(const ris_json_at *at, ris_muscle_def *def, ris_e
     return result;
 }
 
+/* Onset and release: the record's own, else those of the head for its sort of muscle. */
+static ris_result read_pace(const ris_json_at *at, const ris_dynamics_def *dynamics, ris_muscle_def *def,
+                            ris_error *err)
+{
+    const bool lid = def->acts_on == RIS_ACTS_ON_LID || def->closes_on_line,
+               jaw = def->end_bone != RIS_BONE_AUTO;
+    ris_json_at onset = ris__json_key(at, "onset_ms"), release = ris__json_key(at, "release_ms");
+    def->onset_ms = lid ? dynamics->lid_onset_ms : jaw ? dynamics->jaw_onset_ms : dynamics->onset_ms;
+    def->release_ms = lid ? dynamics->lid_release_ms : jaw ? dynamics->jaw_release_ms : dynamics->release_ms;
+    ris_result result = ris__json_float(&onset, RIS_JSON_OPTIONAL, 0, RIS_MAX_PACE_MS, &def->onset_ms, err);
+    return result == RIS_OK
+               ? ris__json_float(&release, RIS_JSON_OPTIONAL, 0, RIS_MAX_PACE_MS, &def->release_ms, err)
+               : result;
+}
+
 /* A record with its own grid; def->name is read already. */
-static ris_result read_own(const ris_json_at *at, uint32_t vertex_count, ris_muscle_def *def, ris_error *err)
+static ris_result read_own(const ris_json_at *at, const ris_head *head, ris_muscle_def *def, ris_error *err)
 {
     static const char *const kinds[] = {"linear", "sphincter", NULL};
     static const char *const bones[] = {"auto", "skull", "jaw", NULL}; /* order of ris_bone */
@@ -286,7 +321,8 @@ static ris_result read_own(const ris_json_at *at, uint32_t vertex_count, ris_mus
     if ((result = read_end_bone(&end_bone, def, err)) || (result = read_drives(&drives, def, err)) ||
         (result = read_grid(&grid, def, err)) || (result = read_axis(&axis, def, err)) ||
         (result = read_closes(&closes, def, err)) || (result = read_acts_on(&acts_on, def, err)) ||
-        (result = read_numbers(at, def, err)) || (result = read_attach(&attach, vertex_count, def, err)) ||
+        (result = read_numbers(at, def, err)) || (result = read_pace(at, &head->dynamics, def, err)) ||
+        (result = read_attach(&attach, head->skin.vertex_count, def, err)) ||
         (result = read_action_units(&units, def, err)) || (result = read_story(&origin, &def->origin, err)) ||
         (result = read_story(&insertion, &def->insertion, err)) ||
         (result = read_story(&source, &def->source, err))) {
@@ -416,7 +452,7 @@ ris_result ris__muscles_read(const ris_json *json, ris_head *head, ris_error *er
             if (pass == 0) {
                 result = read_record_name(&record, head, i, err);
             } else if (pass == 1 && !mirrored) {
-                result = read_own(&record, head->skin.vertex_count, &head->muscle[i], err);
+                result = read_own(&record, head, &head->muscle[i], err);
             } else if (pass == 2 && mirrored) {
                 result = read_mirrored(&record, head, &head->muscle[i], err);
             }

@@ -137,6 +137,8 @@ static ris_result make_muscle(const ris_scene_def *def, const band *b, ris_muscl
         .insertion_start = b->insertion_start,
         .lip_drag_power = b->lip_drag_power,
         .gain = 1.2f,
+        .onset_ms = def->dynamics.onset_ms,
+        .release_ms = def->dynamics.release_ms,
         .attach_auto = true,
         .has_axis = b->kind == RIS_MUSCLE_SPHINCTER,
     };
@@ -190,6 +192,7 @@ ris_result ris_scene_head(const ris_scene_def *def, ris_head *out, ris_error *er
                         def->rows, (double)def->spacing_mm, (double)def->radius_mm);
     }
     out->tissue = def->tissue;
+    out->dynamics = def->dynamics;
     out->jaw = ris_default_jaw();
     out->jaw.point = v3(0, 15, 0);
     out->jaw.incisor = v3(0, -28, 76);

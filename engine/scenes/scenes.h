@@ -17,9 +17,11 @@ typedef struct ris_scene_def {
     bool pinned_border; /* the border nodes are static */
     bool rig;           /* muscles of a mouth and a brow, and a jaw weight rising downwards */
     ris_tissue_def tissue;
+    ris_dynamics_def dynamics;
 } ris_scene_def;
 
-/* 49 x 61 nodes 2 mm apart on a sphere of 90 mm with rig, 2,773 of them moving, default tissue. */
+/* 49 x 61 nodes 2 mm apart on a sphere of 90 mm with rig, 2,773 of them moving, default tissue; muscles act
+ * at once. */
 ris_scene_def ris_default_scene_def(void);
 /* The head of a scene; release with ris_head_finish. RIS_ERROR_USAGE: impossible sizes. */
 ris_result ris_scene_head(const ris_scene_def *def, ris_head *out, ris_error *err);

@@ -17,6 +17,11 @@ ris_result ris__rig_init(ris_rig *rig, const ris_model *model, ris_error *err)
         void *field;
         size_t count, size;
     } arrays[] = {
+        {&rig->onset, model->channel_count, sizeof *rig->onset},
+        {&rig->release, model->channel_count, sizeof *rig->release},
+        {&rig->excitation, model->channel_count, sizeof *rig->excitation},
+        {&rig->reached, model->channel_count, sizeof *rig->reached},
+        {&rig->pose, model->channel_count, sizeof *rig->pose},
         {&rig->p, model->fiber_point_count, sizeof *rig->p},
         {&rig->q, model->fiber_point_count, sizeof *rig->q},
         {&rig->constrained, model->fiber_point_count, sizeof *rig->constrained},
@@ -56,12 +61,18 @@ ris_result ris__rig_init(ris_rig *rig, const ris_model *model, ris_error *err)
         ris__rig_finish(rig);
         return result;
     }
+    ris__activation_init(rig);
     ris__rig_reset(rig);
     return RIS_OK;
 }
 
 void ris__rig_finish(ris_rig *rig)
 {
+    free(rig->onset);
+    free(rig->release);
+    free(rig->excitation);
+    free(rig->reached);
+    free(rig->pose);
     free(rig->p);
     free(rig->q);
     free(rig->constrained);
@@ -90,6 +101,9 @@ void ris__rig_reset(ris_rig *rig)
     rig->jaw = ris__rigid_turn(v3(0, 0, 0), v3(1, 0, 0), 0.0);
     rig->eye[0] = rig->eye[1] = rig->head = rig->jaw;
     rig->tongue.still = true;
+    memset(rig->excitation, 0, model->channel_count * sizeof *rig->excitation);
+    memset(rig->reached, 0, model->channel_count * sizeof *rig->reached);
+    memset(rig->pose, 0, model->channel_count * sizeof *rig->pose);
     memcpy(rig->p, model->fiber_point, model->fiber_point_count * sizeof *rig->p);
     memcpy(rig->q, model->fiber_point, model->fiber_point_count * sizeof *rig->q);
     memset(rig->contraction, 0, model->muscle_count * sizeof *rig->contraction);

@@ -63,9 +63,18 @@ typedef struct ris_tongue {
     ris_tongue_frame frame[RIS__TONGUE_STEPS + 1];
 } ris_tongue;
 
+/* What a tick leaves of the two stages of activation: of each stage's own way to go, and of the first's in the second. */
+typedef struct ris_pace {
+    double keep, pass; /* exp(-x), x exp(-x); x = tick over time constant; both 0 = at once */
+} ris_pace;
+
 typedef struct ris_rig {
     const ris_model *model;
     uint32_t first_beside; /* channel number of jaw.open */
+    /* activation; (channel_count) each */
+    ris_pace *onset, *release;    /* constant */
+    double *excitation, *reached; /* first and second stage */
+    float *pose;                  /* the second: the pose that all later stages see */
     /* jaw_pose */
     ris_rigid jaw, eye[2], head;
     ris_rigid jaw_open; /* the jaw without its slide; equal to jaw when it does not slide */
@@ -106,7 +115,9 @@ void ris__rig_finish(ris_rig *rig);
 /* Neutral pose: targets at rest, deltas zero. */
 void ris__rig_reset(ris_rig *rig);
 
-/* The stages; pose has channel_count floats. */
+/* The stages; pose has channel_count floats: what is asked for in activation, rig->pose in all others. */
+/* at_once: no onset, everything is where it is asked to be. */
+void ris__activation(ris_rig *rig, const float *pose, bool at_once);
 void ris__jaw_pose(ris_rig *rig, const float *pose);
 void ris__muscle_contract(ris_rig *rig, const float *pose);
 void ris__muscle_constrain(ris_rig *rig);
@@ -116,6 +127,8 @@ void ris__muscle_attach(ris_rig *rig);
 void ris__lid_pose(ris_rig *rig, const float *pose);
 void ris__tongue_pose(ris_rig *rig, const float *pose);
 
+/* The paces of all channels. */
+void ris__activation_init(ris_rig *rig);
 /* Finds the tongue among the parts. */
 void ris__tongue_init(ris_tongue *tongue, const ris_head *head);
 /* Where a point of the tongue at rest is now, in the frame of the jaw. */
@@ -129,6 +142,12 @@ void ris__muscle_shape(const ris_rig *rig, ris_vec3 *point, ris_segment *segment
 
 /* Formulas of the stages, alone for the hand-computed numbers of the tests. */
 
+/* exp(-x), x >= 0, from a fixed series: the same bits on every machine. */
+double ris__decay(double x);
+/* Pace that does 90 % of a step in ms; 0 = at once. */
+ris_pace ris__pace(float ms);
+/* One tick of both stages towards u, exact for a constant u. second never leaves the range of itself, first and u. */
+void ris__follow(ris_pace pace, double u, double *first, double *second);
 /* Cosine and sine from fixed series: the same bits on every machine. */
 void ris__cos_sin(double angle_rad, double *out_cos, double *out_sin);
 /* KA-05. Rotation by angle_rad about the unit axis through point. */

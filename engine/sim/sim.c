@@ -23,6 +23,7 @@ struct ris_sim {
     void *self;
     char backend[256];
     ris_rig rig;
+    bool at_once;      /* the pose is held: only its equilibrium counts, and no onset */
     ris_vec4 *scratch; /* (node_count) */
     ris_sim_times times;
 };
@@ -130,8 +131,10 @@ ris_result ris_sim_reset(ris_sim *sim, ris_error *err)
 }
 
 /* The host stages, in order. */
-static void run_muscle_stages(ris_sim *sim, const float *pose)
+static void run_muscle_stages(ris_sim *sim, const float *asked)
 {
+    const float *pose = sim->rig.pose;
+    ris__activation(&sim->rig, asked, sim->at_once);
     ris__jaw_pose(&sim->rig, pose);
     ris__muscle_contract(&sim->rig, pose);
     ris__muscle_constrain(&sim->rig);
@@ -251,6 +254,7 @@ ris_result ris_sim_hold(ris_sim *sim, const float *pose, double limit_s, ris_hol
     uint32_t quiet = 0;
     ris_vec4 *before = NULL;
     *out = (ris_hold){0};
+    sim->at_once = true;
     ris_result result =
         ris__model_alloc(&before, sim->model->node_count, sizeof *before, "the simulation", err);
     for (uint32_t tick = 1; result == RIS_OK && !out->at_rest && (tick - 0.5) * RIS_TICK_S < limit_s;
@@ -263,6 +267,7 @@ ris_result ris_sim_hold(ris_sim *sim, const float *pose, double limit_s, ris_hol
         out->at_rest = result == RIS_OK && quiet >= REST_TICKS;
         out->time_s = tick * RIS_TICK_S;
     }
+    sim->at_once = false;
     free(before);
     return result;
 }

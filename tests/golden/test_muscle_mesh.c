@@ -240,8 +240,9 @@ static ris_vec3 shown_move(const ris_model *model, const char *channel, const ch
     ris_segment *segment = calloc(model->segment_count, sizeof *segment);
     assert_true(pose && point && segment && ris_model_channel(model, channel) != UINT32_MAX);
     pose[ris_model_channel(model, channel)] = 1.0f;
+    ris_hold hold;
     GOOD(ris_sim_create_cpu(model, &sim, &err));
-    GOOD(ris_sim_tick(sim, pose, &err));
+    GOOD(ris_sim_hold(sim, pose, RIS_TICK_S, &hold, &err)); /* one tick without onset */
     ris_sim_muscles(sim, point, segment);
     const uint32_t at =
         model->fiber[model->muscle[muscle_named(model, muscle)].first_fiber].first_point + row;

@@ -233,6 +233,37 @@ static void test_tissue(void **state)
     ris_head_finish(&head);
 }
 
+/* A muscle takes its own onset and release, else those of its sort; a mirrored one those of its source. */
+static void test_dynamics(void **state)
+{
+    (void)state;
+    ris_head head;
+    write_head();
+    expect_loads(&head);
+    const ris_dynamics_def def = ris_default_dynamics();
+    assert_memory_equal(&head.dynamics, &def, sizeof def);
+    assert_true(def.lid_onset_ms < def.onset_ms && def.onset_ms < def.jaw_onset_ms &&
+                def.onset_ms < def.release_ms);
+    assert_true(head.muscle[0].onset_ms == def.onset_ms && head.muscle[0].release_ms == def.release_ms);
+    ris_head_finish(&head);
+    scratch_write("head.json", HEAD_START JAW ",\"dynamics\":{\"onset_ms\":5,\"jaw_onset_ms\":7}}");
+    scratch_write("muscles.json",
+                  MUSCLES_HEAD "{\"name\":\"masseter.L\",\"kind\":\"linear\",\"grid\":" GRID BOTH
+                               ",\"release_ms\":0},{\"name\":\"masseter.R\",\"mirror_of\":\"masseter.L\"}]}");
+    expect_loads(&head);
+    assert_true(head.dynamics.onset_ms == 5 && head.dynamics.release_ms == def.release_ms);
+    for (uint32_t k = 0; k < 2; k++) {
+        assert_true(head.muscle[k].onset_ms == 7 && head.muscle[k].release_ms == 0);
+    }
+    ris_head_finish(&head);
+    expect_refused("head.json", HEAD_START JAW ",\"dynamics\":{\"onset_ms\":-1}}",
+                   "dynamics.onset_ms: expected a number of 0 to 2000, found -1");
+    expect_refused("head.json", HEAD_START JAW ",\"dynamics\":{\"onset\":1}}", "dynamics.onset: unknown key");
+    expect_refused("head.json", HEAD_START JAW ",\"dynamics\":1}", "dynamics: expected an object");
+    expect_refused("muscles.json", CHEWING(",\"onset_ms\":3000"),
+                   "muscles[0].onset_ms: expected a number of 0 to 2000, found 3000");
+}
+
 static void test_refuses_files(void **state)
 {
     (void)state;
@@ -515,6 +546,7 @@ int main(void)
         cmocka_unit_test(test_muscle_keys),
         cmocka_unit_test(test_jaw_muscle_keys),
         cmocka_unit_test(test_tissue),
+        cmocka_unit_test(test_dynamics),
         cmocka_unit_test(test_refuses_files),
         cmocka_unit_test(test_refuses_head_json),
         cmocka_unit_test(test_guidance),

@@ -60,6 +60,8 @@ typedef struct ris_muscle_def {
     float insertion_start; /* t0 of the insertion profile along the fibre, 0..1 */
     float lip_drag_power; /* > 0: the end pulls the lip corner, drag along the oris is t^power; 0 = no pull */
     float gain;           /* factor on the weight (docs/physics.md) */
+    float onset_ms,
+        release_ms; /* until 90 % of a sudden change of activation is done, up and down; 0 = at once */
     float fat,
         fat_radius_mm; /* KA-47: how much of the fat over it rises when it shortens, and how far beside it */
     bool attach_auto;
@@ -160,6 +162,14 @@ typedef struct ris_tissue_def {
     ris_anchor_region anchor_region[32];
 } ris_tissue_def;
 
+/* How fast what a pose asks for becomes activation: ms until 90 % of a sudden change is done, 0 = at once (docs/physics.md,
+ * activation). All 0 in the kaehler tissue. */
+typedef struct ris_dynamics_def {
+    float onset_ms, release_ms;         /* muscles without times of their own, protrusion, tongue */
+    float lid_onset_ms, lid_release_ms; /* muscles of the lids, lid channels */
+    float jaw_onset_ms, jaw_release_ms; /* muscles between bones, jaw channels */
+} ris_dynamics_def;
+
 /* One term of an expression: a channel name (sided or not) and its value. */
 typedef struct ris_term {
     char channel[RIS_NAME_SIZE];
@@ -192,6 +202,7 @@ typedef struct ris_head {
     ris_jaw_def jaw;
     ris_guidance guidance;
     ris_tissue_def tissue;
+    ris_dynamics_def dynamics;
     uint32_t expression_count;
     ris_expression *expression;
 } ris_head;
@@ -200,6 +211,9 @@ typedef struct ris_head {
 ris_jaw_def ris_default_jaw(void);
 /* Default tissue: docs/physics.md, with thesis numbers for the kaehler fields. */
 ris_tissue_def ris_default_tissue(void);
+
+/* The times of docs/physics.md, activation. */
+ris_dynamics_def ris_default_dynamics(void);
 
 /* Reads directory/head.json and all it names. On failure *out is zeroed and err says file:line:col where it can. */
 ris_result ris_head_load(const char *directory, ris_head *out, ris_error *err);

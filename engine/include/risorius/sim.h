@@ -1,5 +1,5 @@
 /* The simulation: a pose in, skin positions and normals out, on the CPU or on a Vulkan device. One thread
- * per sim. One tick = 1/60 s: jaw_pose .. contact_pose on the host, then on the backend anchor_shift, substeps of
+ * per sim. One tick = 1/60 s: activation .. contact_pose on the host, then on the backend anchor_shift, substeps of
  * [bend, spring_force, verlet, lip_normal, contact], normal. */
 #pragma once
 
@@ -43,7 +43,7 @@ const char *ris_state_name(ris_state state);
 /* Backend times of the last tick, ms; host and wait filled by every backend, stages where it can measure
  * them. */
 typedef struct ris_sim_times {
-    double muscle_ms;                 /* jaw_pose .. tongue_pose on the host */
+    double muscle_ms;                 /* activation .. contact_pose on the host */
     double upload_ms;                 /* anchor upload */
     double stage_ms[RIS_STAGE_COUNT]; /* sum over substeps */
     double wait_ms;                   /* record, submit and fence wait (0 on the CPU) */
@@ -57,7 +57,8 @@ void ris_sim_destroy(ris_sim *sim);
 
 /* Puts every node at rest, velocities zero, pose neutral. */
 ris_result ris_sim_reset(ris_sim *sim, ris_error *err);
-/* Advances one tick with the pose (channel_count floats, clamped by the caller). RIS_ERROR_DIVERGED names
+/* Advances one tick with the pose (channel_count floats, clamped by the caller) that the muscles are asked for; they
+ * follow in their own time (ris_dynamics_def). RIS_ERROR_DIVERGED names
  * stage and vertex. */
 ris_result ris_sim_tick(ris_sim *sim, const float *pose, ris_error *err);
 /* Ticks until no node is faster than 0.1 mm/s for 0.25 s; after 20 s RIS_ERROR_FAILED naming the vertex.
@@ -72,7 +73,8 @@ typedef struct ris_hold {
     uint32_t vertex;
 } ris_hold;
 
-/* Ticks until at rest or for limit_s, whichever is first; not at rest is no error. */
+/* Ticks until at rest or for limit_s, whichever is first; not at rest is no error. All muscles are at the pose from the
+ * first tick on, without onset: what counts is the equilibrium. */
 ris_result ris_sim_hold(ris_sim *sim, const float *pose, double limit_s, ris_hold *out, ris_error *err);
 
 ris_result ris_sim_read(ris_sim *sim, ris_state state, ris_vec4 *out, ris_error *err); /* (node_count) */
@@ -95,7 +97,7 @@ void ris_sim_head_transform(const ris_sim *sim, float out[12]);
  * (fiber_point_count), and the segments as they are now, height with its bulge (segment_count). What is on
  * the jaw or the lower lip is turned with the jaw in every tissue. */
 void ris_sim_muscles(const ris_sim *sim, ris_vec3 *point, ris_segment *segment);
-/* Activation of a muscle at the last tick, 0..1. */
+/* Activation of a muscle at the last tick, 0..1: what its onset or release has left of what the pose asks for. */
 float ris_sim_activation(const ris_sim *sim, uint32_t muscle);
 
 /* Where a landmark of the head is, in skull space: on the skin at position (node_count, as read from sim), or with
