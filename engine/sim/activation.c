@@ -69,14 +69,19 @@ void ris__activation_init(ris_rig *rig)
             set_pace(rig, model->muscle[m].protrude_channel, def->onset_ms, def->release_ms);
         }
     }
-    for (uint32_t c = RIS__JAW_OPEN; c <= RIS__JAW_SIDE; ++c) {
-        set_pace(rig, rig->first_beside + c, dynamics->jaw_onset_ms, dynamics->jaw_release_ms);
-    }
-    for (uint32_t c = RIS__LID_UPPER_L; c <= RIS__LID_LOWER_R; ++c) {
-        set_pace(rig, rig->first_beside + c, dynamics->lid_onset_ms, dynamics->lid_release_ms);
-    }
-    for (uint32_t c = RIS__TONGUE_OUT; c <= RIS__TONGUE_WIDE; ++c) {
-        set_pace(rig, rig->first_beside + c, dynamics->onset_ms, dynamics->release_ms);
+    const struct {
+        uint32_t first, last;
+        float onset_ms, release_ms;
+    } beside[] = {
+        {RIS__JAW_OPEN, RIS__JAW_SIDE, dynamics->jaw_onset_ms, dynamics->jaw_release_ms},
+        {RIS__LID_UPPER_L, RIS__LID_LOWER_R, dynamics->lid_onset_ms, dynamics->lid_release_ms},
+        {RIS__TONGUE_OUT, RIS__TONGUE_WIDE, dynamics->onset_ms, dynamics->release_ms},
+    };
+    for (size_t k = 0; k < sizeof beside / sizeof *beside; ++k) {
+        for (uint32_t c = rig->first_beside + beside[k].first; /* a model made by hand may have none */
+             c <= rig->first_beside + beside[k].last && c < model->channel_count; ++c) {
+            set_pace(rig, c, beside[k].onset_ms, beside[k].release_ms);
+        }
     }
 }
 
