@@ -274,8 +274,9 @@ static ris_result read_acts_on(const ris_json_at *at, ris_muscle_def *def, ris_e
     uint32_t choice = 0;
     ris_result result = ris__json_choice(at, RIS_JSON_OPTIONAL, choices, &choice, err);
     def->acts_on = (ris_acts_on)choice;
-    if (result == RIS_OK && choice != RIS_ACTS_ON_SKIN && def->kind != RIS_MUSCLE_LINEAR) {
-        return ris__json_expected(at, err, "skin for a sphincter");
+    const bool in_lids = choice == RIS_ACTS_ON_LID && def->closes_on_line;
+    if (result == RIS_OK && choice != RIS_ACTS_ON_SKIN && def->kind != RIS_MUSCLE_LINEAR && !in_lids) {
+        return ris__json_expected(at, err, "skin for a sphincter (lid if it closes on a line)");
     }
     if (result == RIS_OK && choice == RIS_ACTS_ON_LID && !ris__name_is_sided(def->name)) {
         return ris__json_expected(at, err, "lid only for a muscle with a side");

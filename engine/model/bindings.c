@@ -101,7 +101,10 @@ static bool may_bind(const binder *b, uint32_t m, uint32_t node)
         return false; /* nearly always */
     }
     const uint8_t lip = b->muscle_lip[m];
-    if (b->lining[node] || b->bake->model->muscle[m].def->acts_on == RIS_ACTS_ON_LID) {
+    const ris_muscle *muscle = &b->bake->model->muscle[m];
+    const bool thesis_ring =
+        b->bake->head->tissue.model == RIS_TISSUE_KAEHLER && muscle->kind == RIS_MUSCLE_SPHINCTER;
+    if (b->lining[node] || (muscle->def->acts_on == RIS_ACTS_ON_LID && !thesis_ring)) {
         return false;
     }
     if ((lip == LIP_UPPER && b->lip[node] == LIP_LOWER) || (lip == LIP_LOWER && b->lip[node] == LIP_UPPER)) {

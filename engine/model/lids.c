@@ -12,11 +12,14 @@
 #define LEDGE_MAX 3         /* the margin is one of the first rings */
 #define LID_ANCHOR 20000.0f /* g/s^2 at the margin: the tarsal plate is stiff, not skin on springs */
 #define LID_SKIN 0.1f       /* stiffness of the thinnest skin of the face, relative to the rest */
-#define STRETCHES 0.88f     /* outer part of a column that stretches; the rest is as rigid as the ledge */
+#define STRETCHES 0.95f     /* outer part of a column that stretches; the rest is as rigid as the ledge */
+#define LOWER_FOLD 0.4f     /* a raised lower lid folds here, counted from the border of its region ... */
+#define LOWER_ROLL 0.42f    /* ... and is one roll from so much farther on */
 #define PRESS_MM 0.15f      /* closed margins press into each other: the drawn surface rounds their edges */
 #define LEDGE_KEEPS 0.6f    /* share of the ledge's turn beyond its inner corner */
-#define LINING_FOLLOWS                                                                                       \
-    0.25f /* share of a closing lid: farther and it would show its folds, less and it stands in the cornea */
+#define LEDGE_BACK 0.75f /* share of the margin's closing turn that the ledge's inner edge takes: bevelled */
+#define LINING_FOLLOWS 0.15f /* of a closing lid: farther and it would show its folds */
+#define LINING_OPENS 0.3f    /* of an opening one: it lies inside the eye */
 #define LINING_RINGS 2
 #define NO_RING INT32_MAX
 
@@ -361,15 +364,17 @@ static void weigh(const lid_bake *b, uint32_t i)
     const float skin = f_min(rest / STRETCHES, 1.0f);
     node->upper = (b->kind[i] & KIND_UPPER) != 0;
     node->lining = b->ring[i] < 0;
-    node->weight_close = node->upper ? skin * skin * skin : rest * rest * (3.0f - 2.0f * rest);
+    node->weight_close = node->upper ? skin * skin * skin : f_smoothstep((rest - LOWER_FOLD) / LOWER_ROLL);
     node->weight_open = node->upper ? rest * (1.5f - 0.5f * rest) : node->weight_close;
-    if (node->lining) { /* inside the ball: makes way when the lid opens, goes half way with it when it closes */
-        node->weight_open = 1.0f;
-        node->weight_close = LINING_FOLLOWS * f_min(2.0f * node->share, 1.0f);
+    if (node->lining) { /* inside the ball, loose: takes little of what its lid does */
+        const float first = b->ring[i] == -1 ? 1.0f : 0.0f; /* the next ring is tied to the fornix */
+        node->weight_open = first * LINING_OPENS;
+        node->weight_close = first * LINING_FOLLOWS * f_min(2.0f * node->share, 1.0f);
     }
     if (b->ring[i] >= 0 &&
         b->ring[i] < b->margin) { /* its inner edge keeps off the eye, towards the corners all of it */
         const float near = (float)b->ring[i] / (float)b->margin;
+        node->weight_close *= LEDGE_BACK + (1.0f - LEDGE_BACK) * near;
         node->close_mm *= near + (near > 0.0f ? (1.0f - near) * f_min(2.0f * node->share, 1.0f) : 0.0f);
     }
     node->close_mm *= skin * skin;

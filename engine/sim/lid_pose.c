@@ -13,6 +13,8 @@
 #define FOLD_ROOM_RAD (4.5f * DEG)  /* ... and at most so much farther under its fold */
 #define LOWER_UP_RAD (10.0f * DEG)  /* lid.lower 1 */
 #define LOWER_DOWN_RAD (3.6f * DEG) /* lid.lower -1 */
+#define SQUEEZE_UPPER 0.45f         /* the ring in the lids at its strongest: share of closing, */
+#define SQUEEZE_LOWER 1.0f          /* and of lid.lower */
 #define UPPER_FOLLOWS 0.75f         /* share of the eye's pitch */
 #define LOWER_FOLLOWS 0.3f
 #define MEET_HALF 0.6f  /* at the corners the lids meet half way ... */
@@ -32,13 +34,13 @@ typedef struct lid_state {
     bool still;
 } lid_state;
 
-/* Activation of the muscles that lift the upper lid of this eye. */
-static float levator(const ris_rig *rig, uint32_t eye)
+/* Activation of this eye's lid muscles: linear ones lift the upper lid, rings narrow both. */
+static float lid_muscle(const ris_rig *rig, uint32_t eye, ris_muscle_kind kind)
 {
     float most = 0.0f;
     for (uint32_t m = 0; m < rig->model->muscle_count; ++m) {
         const ris_muscle *muscle = &rig->model->muscle[m];
-        if (muscle->lid_eye == eye + 1) {
+        if (muscle->lid_eye == eye + 1 && muscle->kind == kind) {
             most = f_max(most, rig->activation[m]);
         }
     }
@@ -47,7 +49,8 @@ static float levator(const ris_rig *rig, uint32_t eye)
 
 static lid_state read_state(const ris_rig *rig, const float *beside, uint32_t eye)
 {
-    const float lift = levator(rig, eye);
+    const float lift = lid_muscle(rig, eye, RIS_MUSCLE_LINEAR),
+                squeeze = lid_muscle(rig, eye, RIS_MUSCLE_SPHINCTER);
     const float upper = beside[RIS__LID_UPPER_L + eye], pitch = beside[RIS__EYE_PITCH_L + eye] * DEG;
     lid_state s = {.closed = f_clamp(upper, 0.0f, 1.0f),
                    .open_rad = rig->model->lid_eye[eye].open_rad,
@@ -58,7 +61,9 @@ static lid_state read_state(const ris_rig *rig, const float *beside, uint32_t ey
     s.sink = f_max(-pitch, 0.0f) * UPPER_FOLLOWS;
     s.pitch = pitch * LOWER_FOLLOWS;
     s.gaze = ris__rigid_rotate(&rig->eye[eye], v3(0, 0, 1));
-    s.still = upper == 0.0f && lift == 0.0f && s.lower == 0.0f && rig->eye[eye].identity;
+    s.closed += (1.0f - s.closed) * SQUEEZE_UPPER * squeeze;
+    s.lower = f_min(s.lower + SQUEEZE_LOWER * squeeze, 1.0f);
+    s.still = upper == 0.0f && lift == 0.0f && squeeze == 0.0f && s.lower == 0.0f && rig->eye[eye].identity;
     return s;
 }
 

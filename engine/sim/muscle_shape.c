@@ -88,7 +88,8 @@ static float holds_lid(const ris_model *model, uint32_t m, const ris_lid_node *l
                        ris_vec3 rest)
 {
     const ris_binding whole = {.weight = 1.0f};
-    if (lid->upper && model->muscle[m].lid_eye == lid->eye + 1) {
+    if ((lid->upper || model->muscle[m].kind == RIS_MUSCLE_SPHINCTER) &&
+        model->muscle[m].lid_eye == lid->eye + 1) {
         return nearness(&whole, point, rest, LID_MM);
     }
     for (uint32_t b = model->binding_start[lid->node]; b < model->binding_start[lid->node + 1]; ++b) {
@@ -136,8 +137,9 @@ static void place_points(const ris_rig *rig, uint32_t m, ris_vec3 *point)
             }
             const float t = (float)i / (float)(muscle->point_count - 1);
             if (muscle->def->closes_on_line || (muscle->lid_eye != 0 && t > LID_FROM)) {
-                const float share =
-                    muscle->lid_eye != 0 ? f_smoothstep((t - LID_FROM) / (1.0f - LID_FROM)) : 1.0f;
+                const float share = muscle->kind == RIS_MUSCLE_LINEAR
+                                        ? f_smoothstep((t - LID_FROM) / (1.0f - LID_FROM))
+                                        : 1.0f;
                 p = v3_mad(p, share, lid_carry(rig, m, model->fiber_point[first + i]));
             }
             point[first + i] = p;

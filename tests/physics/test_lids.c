@@ -343,6 +343,24 @@ static void the_levator_lifts_the_lid(void **state)
     assert_true(widest_gap() < GAP_MM);
 }
 
+/* AU7: the ring within the lids narrows the eye from both sides, leaves it open, and moves no other skin. */
+static void the_ring_narrows_both_lids(void **state)
+{
+    (void)state;
+    memset(pose, 0, model->channel_count * sizeof *pose);
+    set("orbicularis_oculi_palpebral.L", 1);
+    settle();
+    print_message("palpebral ring: upper %.2f, lower %.2f mm\n", (double)margin_lift(UPPER),
+                  (double)margin_lift(LOWER));
+    assert_true(margin_lift(UPPER) < -2.5f && margin_lift(UPPER) > -4.5f);
+    assert_true(margin_lift(LOWER) > 2.0f && margin_lift(LOWER) < 3.5f);
+    assert_outside();
+    for (uint32_t i = 0; i < model->node_count; ++i) {
+        const bool here = lid[i] && rest[i].x > 0.0f;
+        assert_true(here || v3_distance(v4_xyz(x[i]), v4_xyz(rest[i])) < 0.6f);
+    }
+}
+
 /* One eye at a time is the mirror image of the other, and moves nothing on its side. */
 static void one_eye_mirrors(void **state)
 {
@@ -405,6 +423,7 @@ int main(void)
         cmocka_unit_test(wide_and_gaze),
         cmocka_unit_test(muscles_do_not_open_closed_lids),
         cmocka_unit_test(the_levator_lifts_the_lid),
+        cmocka_unit_test(the_ring_narrows_both_lids),
         cmocka_unit_test(one_eye_mirrors),
         cmocka_unit_test(blink),
     };

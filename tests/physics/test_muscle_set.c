@@ -205,6 +205,7 @@ static void muscles_do_what_they_are_named_for(void **state)
         ris_vec3 place, direction;
     } cases[] = {
         {"frontalis_outer.L", {48, 40, 77}, {0, 1, 0}},
+        {"frontalis_middle.L", {34, 43, 87}, {0, 1, 0}},
         {"procerus", {0, 35, 97}, {0, -1, 0}},
         {"levator_labii_superioris_alaeque_nasi.L", {17, -27, 93}, {0, 1, 0}},
         {"levator_labii_superioris.L", {17, -38, 96}, {0, 1, 0}},
@@ -243,6 +244,7 @@ static void the_set_is_whole(void **state)
                                        "levator_labii_superioris",
                                        "depressor_labii_inferioris",
                                        "frontalis_inner",
+                                       "frontalis_middle",
                                        "frontalis_outer",
                                        "orbicularis_oculi_orbital",
                                        "orbicularis_oculi_palpebral",

@@ -492,10 +492,11 @@ static void test_refuses_muscles(void **state)
                    MUSCLES_HEAD "{\"name\":\"a\",\"kind\":\"linear\",\"grid\":" GRID
                                 ",\"acts_on\":\"lid\"}]}",
                    "muscles[0].acts_on: expected lid only for a muscle with a side, found \"lid\"");
-    expect_refused("muscles.json",
-                   MUSCLES_HEAD "{\"name\":\"a\",\"kind\":\"sphincter\",\"grid\":" GRID
-                                ",\"axis\":[[0,0,10],[0,0,20]],\"acts_on\":\"lip\"}]}",
-                   "muscles[0].acts_on: expected skin for a sphincter, found \"lip\"");
+    expect_refused(
+        "muscles.json",
+        MUSCLES_HEAD "{\"name\":\"a\",\"kind\":\"sphincter\",\"grid\":" GRID
+                     ",\"axis\":[[0,0,10],[0,0,20]],\"acts_on\":\"lip\"}]}",
+        "muscles[0].acts_on: expected skin for a sphincter (lid if it closes on a line), found \"lip\"");
     expect_refused("muscles.json", MUSCLES_HEAD MUSCLE_L ",\n" MUSCLE_L "]}",
                    "muscles.json:2:9: muscles[1].name: the muscle \"risorius.L\" is there already");
     expect_refused("muscles.json",

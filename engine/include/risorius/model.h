@@ -36,7 +36,7 @@ typedef struct ris_muscle {
     float max_shortening, insertion_start, lip_drag_power, radius_mm, gain;
     ris_vec3 axis[2];
     uint32_t tied_ring;        /* ring of the lip that it ties to the bone, UINT32_MAX: none */
-    uint8_t lid_eye;           /* eye whose upper lid it lifts: 1 = L, 2 = R, 0 = none */
+    uint8_t lid_eye;           /* eye whose lids it moves: 1 = L, 2 = R, 0 = none */
     uint8_t tied_end;          /* half of the ring: 0 from its first point, 1 from its last */
     uint32_t protrude_channel; /* of the movable centre (KA-32), UINT32_MAX = none */
     const ris_muscle_def *def;
