@@ -11,6 +11,7 @@
 #define PLANE_STEPS 12
 #define AREA_UNIT_MM2 25.0f
 #define SMOOTHING_PASSES 2
+#define HEFT_MM 10.0f /* tissue of this thickness has heft 1 */
 
 /* Sets (or, for "muscle", blends in) the stiffness of one record. */
 static ris_result apply_region(const ris_bake *bake, const ris_anchor_region *record, float *normal,
@@ -61,6 +62,12 @@ static void smooth(const ris_model *model, float *value, float *scratch)
     }
 }
 
+/* How far the stiffness of an anchor and the weight of what it holds go with the area of the node. */
+static float area_share(const ris_model *model, uint32_t i)
+{
+    return f_clamp(model->node_area_mm2[i] / AREA_UNIT_MM2, 0.05f, 4.0f);
+}
+
 static ris_result fill_default(ris_bake *bake, float *normal, float *tangential, float *scratch,
                                ris_error *err)
 {
@@ -78,12 +85,13 @@ static ris_result fill_default(ris_bake *bake, float *normal, float *tangential,
         if (!bake->moving[i]) {
             continue;
         }
-        const float scale =
-            f_clamp(model->node_area_mm2[i] / AREA_UNIT_MM2, 0.05f, 4.0f) * tissue->stiffness_scale;
+        const float scale = area_share(model, i) * tissue->stiffness_scale;
         ris_anchor_param *param = &model->anchor_param[i];
         param->normal = normal[i] * scale;
         param->tangential = tangential[i] * scale;
         param->bend = tissue->bending * tissue->stiffness_scale;
+        const float thick = bake->head->depth_mm[i] / HEFT_MM;
+        model->heft[i] = area_share(model, i) * f_clamp(thick * thick, 0.04f, 2.0f);
         if (!(param->normal >= 0.0f) || !(param->tangential >= 0.0f)) {
             return ris_fail(err, RIS_ERROR_DATA,
                             "anchor stiffness of vertex %u is %g, %g, expected 0 or more", i,
@@ -191,6 +199,9 @@ ris_result ris__bake_anchors(ris_bake *bake, ris_error *err)
     ris_result result = ris__model_alloc(&model->bone_anchor, n, sizeof *model->bone_anchor, "anchors", err);
     if (result == RIS_OK) {
         result = ris__model_alloc(&model->anchor_param, n, sizeof *model->anchor_param, "anchors", err);
+    }
+    if (result == RIS_OK) {
+        result = ris__model_alloc(&model->heft, n, sizeof *model->heft, "anchors", err);
     }
     if (result == RIS_OK) {
         result = ris__model_alloc(&values, 3 * (size_t)n, sizeof *values, "anchors", err);

@@ -157,6 +157,7 @@ void ris_model_destroy(ris_model *model)
     free(model->ring_start);
     free(model->ring);
     free(model->anchor_param);
+    free(model->heft);
     free(model->rest_normal);
     free(model->triangle);
     free(model->triangle_corner);

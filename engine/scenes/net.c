@@ -31,6 +31,7 @@ static ris_result allocate(ris_model *model, const ris_scene_net_def *def, ris_e
         {&model->triangle, 1, sizeof *model->triangle},
         {&model->triangle_corner, 1, sizeof *model->triangle_corner},
         {&model->anchor_param, n, sizeof *model->anchor_param},
+        {&model->heft, n, sizeof *model->heft},
         {&model->node_area_mm2, n, sizeof *model->node_area_mm2},
         {&model->binding_start, n + 1, sizeof *model->binding_start},
         {&model->bone_anchor, n, sizeof *model->bone_anchor},
@@ -73,6 +74,7 @@ static ris_result fill(ris_model *model, const ris_scene_net_def *def, ris_error
         model->rest_normal[i].z = 1.0f;
         model->bone_anchor[i] =
             v3_sub(def->position[i], v3(0, 0, def->anchor ? def->anchor[i].rest_mm : 0.0f));
+        model->heft[i] = 1.0f;
         model->moving_count += !pinned;
         if (def->anchor) {
             model->anchor_param[i] = def->anchor[i];

@@ -101,6 +101,8 @@ void ris__rig_reset(ris_rig *rig)
     rig->jaw = ris__rigid_turn(v3(0, 0, 0), v3(1, 0, 0), 0.0);
     rig->eye[0] = rig->eye[1] = rig->head = rig->jaw;
     rig->tongue.still = true;
+    rig->head_motion = (ris_head_motion){0};
+    rig->inertia = (ris_inertia){0};
     memset(rig->excitation, 0, model->channel_count * sizeof *rig->excitation);
     memset(rig->reached, 0, model->channel_count * sizeof *rig->reached);
     memset(rig->pose, 0, model->channel_count * sizeof *rig->pose);

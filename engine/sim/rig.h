@@ -68,6 +68,14 @@ typedef struct ris_pace {
     double keep, pass; /* exp(-x), x exp(-x); x = tick over time constant; both 0 = at once */
 } ris_pace;
 
+/* Motion of the head up to the last tick. */
+typedef struct ris_head_motion {
+    double rotation[9], place[3]; /* row-major; mm */
+    double spin[3], speed[3];     /* rad/s in the head's frame; mm/s */
+    uint32_t known;               /* 0 nothing, 1 rotation and place, 2 all */
+    double first[12], second[12]; /* both stages of the smoothing of the rows of the field */
+} ris_head_motion;
+
 typedef struct ris_rig {
     const ris_model *model;
     uint32_t first_beside; /* channel number of jaw.open */
@@ -108,6 +116,9 @@ typedef struct ris_rig {
     ris_vec3 *lid_move; /* what muscles and jaw move the nodes of the lids by, mm (lid_count) */
     /* contact_pose */
     ris_contact_body body[RIS_CONTACT_BODIES];
+    /* head_inertia */
+    ris_head_motion head_motion;
+    ris_inertia inertia;
 } ris_rig;
 
 ris_result ris__rig_init(ris_rig *rig, const ris_model *model, ris_error *err);
@@ -126,6 +137,9 @@ void ris__muscle_bulge(ris_rig *rig);
 void ris__muscle_attach(ris_rig *rig);
 void ris__lid_pose(ris_rig *rig, const float *pose);
 void ris__tongue_pose(ris_rig *rig, const float *pose);
+void ris__contact_pose(ris_rig *rig);
+/* at_once: the head is held where it is, however it came there. */
+void ris__head_inertia(ris_rig *rig, bool at_once);
 
 /* The paces of all channels. */
 void ris__activation_init(ris_rig *rig);
@@ -133,7 +147,6 @@ void ris__activation_init(ris_rig *rig);
 void ris__tongue_init(ris_tongue *tongue, const ris_head *head);
 /* Where a point of the tongue at rest is now, in the frame of the jaw. */
 ris_vec3 ris__tongue_place(const ris_tongue *tongue, ris_vec3 p);
-void ris__contact_pose(ris_rig *rig);
 
 /* How far each control point turns with the jaw when shown (fiber_point_count). */
 ris_result ris__muscle_jaw_weights(const ris_model *model, float *weight, ris_error *err);

@@ -144,6 +144,7 @@ static void run_muscle_stages(ris_sim *sim, const float *asked)
     ris__lid_pose(&sim->rig, pose);
     ris__tongue_pose(&sim->rig, pose);
     ris__contact_pose(&sim->rig);
+    ris__head_inertia(&sim->rig, sim->at_once);
 }
 
 ris_result ris__sim_pose(ris_sim *sim, const float *pose, ris_anchor_frame *out, ris_error *err)
@@ -158,6 +159,7 @@ ris_result ris__sim_pose(ris_sim *sim, const float *pose, ris_anchor_frame *out,
     out->point = sim->rig.point;
     out->delta = sim->rig.delta;
     out->body = sim->rig.body;
+    out->inertia = &sim->rig.inertia;
     return RIS_OK;
 }
 

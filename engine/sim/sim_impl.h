@@ -3,12 +3,13 @@
 
 #include "risorius/sim.h"
 
-/* Host results of one tick, inputs of anchor_shift, spring_force and contact; (node_count) each, body
- * (RIS_CONTACT_BODIES). */
+/* Host results of one tick, inputs of anchor_shift, spring_force, contact and verlet; (node_count) each, body
+ * (RIS_CONTACT_BODIES), inertia (1). */
 typedef struct ris_anchor_frame {
     const ris_anchor_point *point;
     const ris_vec4 *delta;
     const ris_contact_body *body;
+    const ris_inertia *inertia;
 } ris_anchor_frame;
 
 typedef struct ris_sim_impl {

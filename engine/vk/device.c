@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define STORAGE_BUFFERS_NEEDED 20 /* RIS_BIND_COUNT: one set holds all buffers of the simulation */
+#define STORAGE_BUFFERS_NEEDED 22 /* RIS_BIND_COUNT: one set holds all buffers of the simulation */
 
 static const char *type_name(VkPhysicalDeviceType type)
 {
@@ -113,7 +113,7 @@ static void describe(VkPhysicalDevice physical, bool present, ris_device_info *i
     samples = limits->framebufferColorSampleCounts & limits->framebufferDepthSampleCounts;
     miss(info, (samples & VK_SAMPLE_COUNT_4_BIT) != 0, "4x multisampling");
     miss(info, limits->maxPerStageDescriptorStorageBuffers >= STORAGE_BUFFERS_NEEDED,
-         "20 storage buffers a stage");
+         "22 storage buffers a stage");
     miss(info, find_family(physical, &timestamp_bits) != UINT32_MAX, "a queue with graphics and compute");
     if (present) {
         miss(info, has_device_extension(physical, VK_KHR_SWAPCHAIN_EXTENSION_NAME), "VK_KHR_swapchain");

@@ -43,7 +43,9 @@
 #define RIS_BIND_CONTACT_OTHER 17 /* ris_uint (contact_pair_count): nodes of the other lip, sorted by contact node */
 #define RIS_BIND_CONTACT_GRID 18  /* ris_v4 (contact_sample_count): xyz unit, away from the body; w distance, mm, negative inside */
 #define RIS_BIND_CONTACT_BODY 19  /* ris_contact_body (RIS_CONTACT_BODIES), written once a frame */
-#define RIS_BIND_COUNT 20
+#define RIS_BIND_INERTIA 20       /* ris_inertia (1), written once a frame */
+#define RIS_BIND_HEFT 21          /* ris_float (node_count): what the tissue at the node weighs over 25 mm^2 x 10 mm of it */
+#define RIS_BIND_COUNT 22
 
 /* One spring seen from one of its nodes. Each spring appears twice. */
 RIS_STRUCT(ris_half_spring) {
@@ -105,6 +107,13 @@ RIS_STRUCT(ris_contact_body) {
     ris_uint count_z;
     ris_uint first; /* of its samples in the grid array */
 } RIS_STRUCT_END(ris_contact_body);
+
+/* What the flesh feels of the head's motion: acceleration = rows of a 3x4 applied to the position, mm/s^2. */
+RIS_STRUCT(ris_inertia) {
+    ris_v4 row_x;
+    ris_v4 row_y;
+    ris_v4 row_z;
+} RIS_STRUCT_END(ris_inertia);
 
 #define RIS_TISSUE_FLAG_KAEHLER 1u    /* anchor pair instead of normal + tangential anchor */
 #define RIS_TISSUE_FLAG_CONTINUOUS 2u /* continuous biphasic law */

@@ -50,6 +50,7 @@ static void fill_nodes(ris_model *model, uint32_t *seed)
             random_vec(seed, 40.0f, is_static ? 0.0f : random_between(seed, 2.0f, 6.0f));
         model->rest_normal[i] = (ris_vec4){n.x / l, n.y / l, n.z / l, 0.0f};
         if (!is_static) {
+            model->heft[i] = random_between(seed, 0.1f, 2.0f);
             model->anchor_param[i] =
                 (ris_anchor_param){random_between(seed, 5.0f, 60.0f), random_between(seed, 5.0f, 60.0f),
                                    random_between(seed, 3.0f, 20.0f), random_between(seed, 0.0f, 20.0f)};
@@ -144,6 +145,7 @@ static bool allocate(ris_model *model)
     model->half_spring = calloc(n * DEGREE_MAX + 1, sizeof *model->half_spring);
     model->ring_start = calloc(n + 1, sizeof *model->ring_start);
     model->ring = calloc(n * DEGREE_MAX + 3, sizeof *model->ring);
+    model->heft = calloc(n, sizeof *model->heft);
     model->anchor_param = calloc(n, sizeof *model->anchor_param);
     model->rest_normal = calloc(n, sizeof *model->rest_normal);
     model->binding_start = calloc(n + 1, sizeof *model->binding_start);
@@ -157,7 +159,7 @@ static bool allocate(ris_model *model)
     model->channel_count = ris__beside_channel_count;
     model->channel = calloc(model->channel_count, sizeof *model->channel);
     return head && model->rest_position && model->spring_start && model->half_spring && model->ring_start &&
-           model->ring && model->anchor_param && model->rest_normal && model->binding_start &&
+           model->ring && model->anchor_param && model->heft && model->rest_normal && model->binding_start &&
            model->bone_anchor && model->jaw_weight && model->fiber_point && model->channel &&
            model->contact_grid && model->contact_node && model->contact_touch && model->contact_other;
 }
@@ -178,6 +180,7 @@ ris_model *random_model_create(uint32_t node_count, uint32_t flags, uint32_t see
     head->tissue = ris_default_tissue();
     head->tissue.substeps = 8;
     head->jaw = ris_default_jaw();
+    head->dynamics = ris_default_dynamics();
     for (uint32_t c = 0; c < model->channel_count; c++) {
         strncpy(model->channel[c].name, ris__beside_channel[c].name, RIS_NAME_SIZE - 1);
         model->channel[c].minimum = ris__beside_channel[c].minimum;
@@ -205,6 +208,7 @@ void random_model_free(ris_model *model)
     free(model->ring_start);
     free(model->ring);
     free(model->anchor_param);
+    free(model->heft);
     free(model->rest_normal);
     free(model->binding_start);
     free(model->bone_anchor);

@@ -93,6 +93,9 @@ static const field fields[] = {
     FIELD(ris_contact_body, count_y),
     FIELD(ris_contact_body, count_z),
     FIELD(ris_contact_body, first),
+    FIELD(ris_inertia, row_x),
+    FIELD(ris_inertia, row_y),
+    FIELD(ris_inertia, row_z),
 };
 #define FIELD_COUNT (sizeof fields / sizeof fields[0])
 
@@ -121,6 +124,8 @@ static const block blocks[] = {
     {"contact_other_block", RIS_BIND_CONTACT_OTHER, sizeof(uint32_t)},
     {"contact_grid_block", RIS_BIND_CONTACT_GRID, sizeof(ris_vec4)},
     {"contact_body_block", RIS_BIND_CONTACT_BODY, sizeof(ris_contact_body)},
+    {"inertia_block", RIS_BIND_INERTIA, sizeof(ris_inertia)},
+    {"heft_block", RIS_BIND_HEFT, sizeof(float)},
 };
 #define BLOCK_COUNT (sizeof blocks / sizeof blocks[0])
 
@@ -133,7 +138,8 @@ static const struct {
     {"bend", BIT(POSITION) | BIT(REST) | BIT(BEND) | BIT(SPRING_START) | BIT(HALF_SPRING)},
     {"spring_force", BIT(POSITION) | BIT(FORCE) | BIT(BEND) | BIT(SPRING_START) | BIT(HALF_SPRING) |
                          BIT(ANCHOR_PARAM) | BIT(ANCHOR_POINT)},
-    {"verlet", BIT(POSITION) | BIT(VELOCITY_HALF) | BIT(VELOCITY_PREV) | BIT(FORCE) | BIT(FREE)},
+    {"verlet", BIT(POSITION) | BIT(VELOCITY_HALF) | BIT(VELOCITY_PREV) | BIT(FORCE) | BIT(FREE) |
+                   BIT(INERTIA) | BIT(HEFT)},
     {"lip_normal", BIT(FREE) | BIT(NORMAL) | BIT(RING_START) | BIT(RING) | BIT(CONTACT_NODE)},
     {"contact", BIT(POSITION) | BIT(VELOCITY_HALF) | BIT(VELOCITY_PREV) | BIT(NORMAL) | BIT(FREE) |
                     BIT(CONTACT_NODE) | BIT(CONTACT_TOUCH) | BIT(CONTACT_OTHER) | BIT(CONTACT_GRID) |

@@ -35,6 +35,7 @@ typedef struct pair {
     ris_anchor_point *point;
     ris_vec4 *delta;
     ris_contact_body body[RIS_CONTACT_BODIES];
+    ris_inertia inertia;
 } pair;
 
 static void pair_open(pair *p, const ris_model *model)
@@ -93,6 +94,9 @@ static void randomize(pair *p, uint32_t seed)
                             : p->model->rest_normal[i];
         p->delta[i] = random_vec(&seed, 0.5f, 0.0f);
     }
+    p->inertia.row_x = random_vec(&seed, 80.0f, random_between(&seed, -5000.0f, 5000.0f));
+    p->inertia.row_y = random_vec(&seed, 80.0f, random_between(&seed, -5000.0f, 5000.0f));
+    p->inertia.row_z = random_vec(&seed, 80.0f, random_between(&seed, -5000.0f, 5000.0f));
     for (uint32_t k = 0; k < p->model->contact_solid_count; k++) {
         const ris_contact_solid *solid = &p->model->contact_solid[k];
         p->body[k] =
@@ -156,7 +160,7 @@ static void check_all(pair *p, const char *what)
 
 static void run_stage(pair *p, ris_stage stage)
 {
-    const ris_anchor_frame anchors = {p->point, p->delta, p->body};
+    const ris_anchor_frame anchors = {p->point, p->delta, p->body, &p->inertia};
     assert_int_equal(ris__sim_stage(p->cpu, stage, &anchors, NULL), RIS_OK);
     assert_int_equal(ris__sim_stage(p->gpu, stage, &anchors, NULL), RIS_OK);
 }
@@ -273,7 +277,7 @@ static void a_stage_left_out_is_found(void **state)
     assert_non_null(model);
     pair_open(&p, model);
     for (int stage = 0; stage < RIS_STAGE_COUNT; stage++) {
-        const ris_anchor_frame anchors = {p.point, p.delta, p.body};
+        const ris_anchor_frame anchors = {p.point, p.delta, p.body, &p.inertia};
         randomize(&p, 90 + (uint32_t)stage);
         assert_int_equal(ris__sim_stage(p.cpu, (ris_stage)stage, &anchors, NULL), RIS_OK);
         assert_true(read_and_compare(&p, output_of((ris_stage)stage)) < 65);

@@ -188,9 +188,9 @@ static void a_push_is_what_it_should_be(void **state)
                                    .count_z = 3};
     ris_anchor_point point = {0};
     ris_vec4 delta = {0};
-    const ris_anchor_frame anchors = {&point, &delta, &body};
+    const ris_anchor_frame anchors = {&point, &delta, &body, NULL};
     ris_contact_body bodies[RIS_CONTACT_BODIES] = {body};
-    const ris_anchor_frame frame = {anchors.point, anchors.delta, bodies};
+    const ris_anchor_frame frame = {anchors.point, anchors.delta, bodies, NULL};
     ris_sim *alone = NULL;
     need(ris_sim_create_cpu(&one, &alone, &err));
     v[0] = v4_from(v3(-3.0f, 8.0f, 2.0f), 0.0f);

@@ -296,7 +296,7 @@ static void anchor_shift_moves_free_nodes(void **state)
     world w = open_net(&def);
     const ris_anchor_point points[2] = {{{0, 0, 0, 0}, {0, 0, 1, 0}}, {{5, 0, 0, 0}, {0, 0, 1, 0}}};
     const ris_vec4 delta[2] = {{1, 2, 3, 0}, {1, 2, 3, 0}};
-    const ris_anchor_frame anchors = {points, delta, NULL};
+    const ris_anchor_frame anchors = {points, delta, NULL, NULL};
     need(ris__sim_stage(w.sim, RIS_STAGE_ANCHOR_SHIFT, &anchors, &err));
     need(ris_sim_read(w.sim, RIS_STATE_POSITION, w.value, &err));
     assert_true(w.value[0].x == 1.0f && w.value[0].y == 2.0f && w.value[0].z == 3.0f && w.value[0].w == 0.5f);

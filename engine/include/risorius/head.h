@@ -162,12 +162,14 @@ typedef struct ris_tissue_def {
     ris_anchor_region anchor_region[32];
 } ris_tissue_def;
 
-/* How fast what a pose asks for becomes activation: ms until 90 % of a sudden change is done, 0 = at once (docs/physics.md,
+/* How flesh moves in time. How fast what a pose asks for becomes activation: ms until 90 % of a sudden change is done, 0 = at once (docs/physics.md,
  * activation). All 0 in the kaehler tissue. */
 typedef struct ris_dynamics_def {
     float onset_ms, release_ms;         /* muscles without times of their own, protrusion, tongue */
     float lid_onset_ms, lid_release_ms; /* muscles of the lids, lid channels */
     float jaw_onset_ms, jaw_release_ms; /* muscles between bones, jaw channels */
+    /* head_inertia: share of the head's acceleration that the skin feels, and of its weight when the head is tilted */
+    float follow_through, gravity;
 } ris_dynamics_def;
 
 /* One term of an expression: a channel name (sided or not) and its value. */

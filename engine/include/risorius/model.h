@@ -145,6 +145,7 @@ typedef struct ris_model {
     uint32_t *triangle;             /* mirror-symmetric triangulation of the skin (triangle_count x 3) */
     uint32_t *triangle_corner; /* corner of head->skin each triangle vertex came from (triangle_count x 3) */
     float *node_area_mm2;      /* third of the incident triangles (node_count) */
+    float *heft; /* what the tissue down to the bone weighs over 25 mm^2 x 10 mm of it (node_count) */
     float mass_g;
     ris_sim_push push; /* constants of the stages with dt_s = 1/60/substeps */
     float stable_dt_s; /* bound of docs/physics.md, stable step */

@@ -1,5 +1,5 @@
 /* The simulation: a pose in, skin positions and normals out, on the CPU or on a Vulkan device. One thread
- * per sim. One tick = 1/60 s: activation .. contact_pose on the host, then on the backend anchor_shift, substeps of
+ * per sim. One tick = 1/60 s: activation .. head_inertia on the host, then on the backend anchor_shift, substeps of
  * [bend, spring_force, verlet, lip_normal, contact], normal. */
 #pragma once
 
@@ -43,7 +43,7 @@ const char *ris_state_name(ris_state state);
 /* Backend times of the last tick, ms; host and wait filled by every backend, stages where it can measure
  * them. */
 typedef struct ris_sim_times {
-    double muscle_ms;                 /* activation .. contact_pose on the host */
+    double muscle_ms;                 /* activation .. head_inertia on the host */
     double upload_ms;                 /* anchor upload */
     double stage_ms[RIS_STAGE_COUNT]; /* sum over substeps */
     double wait_ms;                   /* record, submit and fence wait (0 on the CPU) */

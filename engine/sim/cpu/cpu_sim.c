@@ -35,6 +35,9 @@ static void take_anchors(ris_cpu_state *state, const ris_anchor_frame *anchors)
     if (anchors->body) {
         memcpy(state->contact_body, anchors->body, sizeof state->contact_body);
     }
+    if (anchors->inertia) {
+        state->inertia = *anchors->inertia;
+    }
 }
 
 static void (*const stages[RIS_STAGE_COUNT])(ris_cpu_state *) = {

@@ -16,6 +16,7 @@ typedef struct ris_cpu_state {
     ris_anchor_point *anchor_point;
     ris_vec4 *anchor_delta; /* mm */
     ris_contact_body contact_body[RIS_CONTACT_BODIES];
+    ris_inertia inertia;
     uint8_t *list; /* stages of a tick of list_substeps */
     uint32_t list_substeps;
 } ris_cpu_state;

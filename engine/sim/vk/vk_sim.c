@@ -193,6 +193,8 @@ static ris_result upload(vk_sim *sim, const ris_anchor_frame *anchors, ris_error
            (size_t)mem->range[RIS_BIND_ANCHOR_DELTA].size);
     memcpy(data + mem->range[RIS_BIND_CONTACT_BODY].offset, anchors->body,
            (size_t)mem->range[RIS_BIND_CONTACT_BODY].size);
+    memcpy(data + mem->range[RIS_BIND_INERTIA].offset, anchors->inertia,
+           (size_t)mem->range[RIS_BIND_INERTIA].size);
     return ris_vk_buffer_flush(sim->vk, &mem->anchor, err);
 }
 

@@ -13,15 +13,15 @@ static const uint32_t state_bindings[] = {RIS_BIND_POSITION, RIS_BIND_VELOCITY_H
 static const uint32_t table_bindings[] = {
     RIS_BIND_REST,          RIS_BIND_SPRING_START, RIS_BIND_HALF_SPRING,  RIS_BIND_RING_START,
     RIS_BIND_RING,          RIS_BIND_ANCHOR_PARAM, RIS_BIND_CONTACT_NODE, RIS_BIND_CONTACT_TOUCH,
-    RIS_BIND_CONTACT_OTHER, RIS_BIND_CONTACT_GRID};
+    RIS_BIND_CONTACT_OTHER, RIS_BIND_CONTACT_GRID, RIS_BIND_HEFT};
 static const uint32_t anchor_bindings[] = {RIS_BIND_ANCHOR_POINT, RIS_BIND_ANCHOR_DELTA,
-                                           RIS_BIND_CONTACT_BODY};
+                                           RIS_BIND_CONTACT_BODY, RIS_BIND_INERTIA};
 #define COUNT(list) ((uint32_t)(sizeof(list) / sizeof(list)[0]))
 
 _Static_assert(sizeof(ris_vec4) == 16 && sizeof(ris_half_spring) == 20 && sizeof(ris_ring) == 8 &&
                    sizeof(ris_anchor_param) == 16 && sizeof(ris_anchor_point) == 32 &&
                    sizeof(ris_contact_body) == 80 && sizeof(ris_contact_node) == 24 &&
-                   sizeof(ris_contact_touch) == 8,
+                   sizeof(ris_contact_touch) == 8 && sizeof(ris_inertia) == 48,
                "scalar layout");
 _Static_assert(sizeof(ris_sim_push) <= 128, "push constants");
 _Static_assert(sizeof state_bindings / sizeof(uint32_t) + sizeof table_bindings / sizeof(uint32_t) +
@@ -75,6 +75,8 @@ static const void *initial(const ris_model *model, uint32_t binding, VkDeviceSiz
         *out_size = model->contact_sample_count * sizeof(ris_vec4);
         return model->contact_grid;
     case RIS_BIND_CONTACT_BODY: *out_size = RIS_CONTACT_BODIES * sizeof(ris_contact_body); return NULL;
+    case RIS_BIND_HEFT: *out_size = nodes * sizeof(float); return model->heft;
+    case RIS_BIND_INERTIA: *out_size = sizeof(ris_inertia); return NULL;
     case RIS_BIND_ANCHOR_POINT: *out_size = nodes * sizeof(ris_anchor_point); return NULL;
     default: *out_size = nodes * sizeof(ris_vec4); return NULL;
     }
