@@ -15,6 +15,83 @@ static uint32_t muscle_nodes(const ris_model *model, uint32_t muscle)
     return count;
 }
 
+static const char *const kind_name[RIS_WORD_KINDS] = {"units", "shapes", "visemes", "expressions"};
+
+/* How many words of a kind there are, and the names of those for which the head lacks a muscle or channel. */
+static void print_vocabulary(const ris_model *model)
+{
+    const ris_vocabulary *vocabulary = &model->vocabulary;
+    printf("vocabulary  ");
+    for (int kind = 0; kind < RIS_WORD_KINDS; kind++) {
+        uint32_t count = 0;
+        for (uint32_t i = 0; i < vocabulary->word_count; i++) {
+            count += (int)vocabulary->word[i].kind == kind;
+        }
+        printf("%s%u %s", kind ? ", " : "", count, kind_name[kind]);
+    }
+    const char *before = "; incomplete on this head: ";
+    for (uint32_t i = 0; i < vocabulary->word_count; i++) {
+        const ris_word *word = &vocabulary->word[i];
+        if (word->missing_count > 0) {
+            printf("%s%s%s", before, word->name, word->value_count == 0 ? " (empty)" : "");
+            before = ", ";
+        }
+    }
+    printf("\n");
+}
+
+static void print_terms(const ris_term *term, uint32_t count)
+{
+    for (uint32_t k = 0; k < count; k++) {
+        printf("%s%s=%g", k ? "," : " ", term[k].channel, (double)term[k].value);
+    }
+}
+
+/* Tables for docs/facs.md. */
+static void print_names(const ris_model *model)
+{
+    static const char *const title[RIS_WORD_KINDS] = {"Action units", "ARKit shapes", "Visemes",
+                                                      "Expressions"};
+    const ris_vocabulary *vocabulary = &model->vocabulary;
+    int kind = -1;
+    for (uint32_t i = 0; i < vocabulary->word_count; i++) {
+        const ris_word *word = &vocabulary->word[i];
+        if ((int)word->kind != kind) {
+            kind = (int)word->kind;
+            printf("\n## %s\n\n| name | title | made of | source |\n| --- | --- | --- | --- |\n",
+                   title[kind]);
+        }
+        printf("| `%s` | %s |", word->name, word->title);
+        for (uint32_t k = 0; k < word->term_count; k++) {
+            printf("%s%s %g", k ? ", " : " ", word->term[k].channel, (double)word->term[k].value);
+        }
+        printf("%s | %s |\n",
+               word->missing_count == 0 ? ""
+               : word->value_count == 0 ? " (empty here)"
+                                        : " (incomplete here)",
+               word->source);
+    }
+}
+
+static void print_json_names(const ris_model *model)
+{
+    const ris_vocabulary *vocabulary = &model->vocabulary;
+    printf("  \"vocabulary\": [");
+    for (uint32_t i = 0; i < vocabulary->word_count; i++) {
+        const ris_word *word = &vocabulary->word[i];
+        printf("%s\n    {\"name\": \"%s\", \"kind\": \"%s\", \"title\": ", i ? "," : "", word->name,
+               kind_name[word->kind]);
+        cli_json_string(stdout, word->title);
+        printf(", \"missing\": %u, \"channels\": {", word->missing_count);
+        for (uint32_t k = 0; k < word->value_count; k++) {
+            printf("%s\"%s\": %.9g", k ? ", " : "", model->channel[word->value[k].channel].name,
+                   (double)word->value[k].value);
+        }
+        printf("}}");
+    }
+    printf("\n  ],\n");
+}
+
 static void print_text(const char *path, const ris_model *model)
 {
     const ris_head *head = model->head;
@@ -34,6 +111,7 @@ static void print_text(const char *path, const ris_model *model)
         printf("network     %u nodes, %u springs between merged muscles\n", model->network_node_count,
                model->network_spring_count);
     }
+    print_vocabulary(model);
     printf("muscles\n");
     for (uint32_t i = 0; i < model->muscle_count; i++) {
         const ris_muscle *m = &model->muscle[i];
@@ -49,10 +127,7 @@ static void print_text(const char *path, const ris_model *model)
     printf("expressions\n");
     for (uint32_t i = 0; i < head->expression_count; i++) {
         printf("  %-32s", head->expression[i].name);
-        for (uint32_t k = 0; k < head->expression[i].term_count; k++) {
-            const ris_term *term = &head->expression[i].term[k];
-            printf("%s%s=%g", k ? "," : " ", term->channel, (double)term->value);
-        }
+        print_terms(head->expression[i].term, head->expression[i].term_count);
         printf("\n");
     }
     printf("parts\n");
@@ -97,6 +172,7 @@ static void print_json(const char *path, const ris_model *model)
     printf("  \"substeps\": %u,\n  \"dt_s\": %.9g,\n  \"stable_dt_s\": %.9g,\n", head->tissue.substeps,
            1.0 / 60.0 / head->tissue.substeps, (double)model->stable_dt_s);
     print_json_muscles(model);
+    print_json_names(model);
     printf("  \"expressions\": [");
     for (uint32_t i = 0; i < head->expression_count; i++) {
         printf("%s", i ? ", " : "");
@@ -112,7 +188,12 @@ static void print_json(const char *path, const ris_model *model)
 
 static ris_result run(ris_cli *cli, int argc, char **argv, ris_error *err)
 {
-    const cli_option options[] = {{0}};
+    bool names = false;
+    const cli_option options[] = {
+        {.name = "names",
+         .help = "print tables of action units, shapes, visemes and expressions instead",
+         .flag = &names},
+        {0}};
     const char *head = NULL;
     uint32_t count;
     ris_result r = cli_parse(cli, &cmd_info, options, argc, argv, &head, 1, &count, err);
@@ -126,7 +207,11 @@ static ris_result run(ris_cli *cli, int argc, char **argv, ris_error *err)
     ris_backend backend;
     r = backend_open(&backend, cli, head, &(backend_need){0}, err);
     if (!r) {
-        (cli->json ? print_json : print_text)(head, backend.model);
+        if (names && !cli->json) {
+            print_names(backend.model);
+        } else {
+            (cli->json ? print_json : print_text)(head, backend.model);
+        }
     }
     backend_close(&backend);
     return r;
@@ -134,7 +219,7 @@ static ris_result run(ris_cli *cli, int argc, char **argv, ris_error *err)
 
 const cli_command cmd_info = {
     .name = "info",
-    .usage = "HEAD [--json]",
+    .usage = "HEAD [--names] [--json]",
     .summary = "counts, springs, stable time step, muscles and channels of a head",
     .run = run,
 };

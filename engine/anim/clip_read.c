@@ -87,8 +87,9 @@ static ris_result read_target(const ris_json_at *at, clip_reader *r, ris_track *
     }
     const char *unknown = ris__pose_expand(&r->names, track->target, 1, r->pose);
     if (unknown) {
-        return ris__json_fail(at, r->err, "unknown muscle, channel or expression \"%s\"; nearest: %s",
-                              unknown, ris__pose_nearest(&r->names, unknown, nearest, sizeof nearest));
+        return ris__json_fail(
+            at, r->err, "unknown muscle, channel, unit, shape, viseme or expression \"%s\"; nearest: %s",
+            unknown, ris__pose_nearest(&r->names, unknown, nearest, sizeof nearest));
     }
     track->term = malloc((count + 1) * sizeof *track->term);
     if (!track->term) {
@@ -185,7 +186,8 @@ static ris_result read_expressions(const ris_json_at *at, clip_reader *r, ris_ex
     ris_scope scope = {.channel = channel,
                        .channel_count = model->channel_count,
                        .outer = model->head ? model->head->expression : NULL,
-                       .outer_count = model->head ? model->head->expression_count : 0};
+                       .outer_count = model->head ? model->head->expression_count : 0,
+                       .vocabulary = &model->vocabulary};
     ris_result result = ris__expressions_read(at, &scope, out, &r->names.clip_expression_count, r->err);
     r->names.clip_expression = *out;
     free(channel);

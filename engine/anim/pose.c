@@ -1,7 +1,9 @@
 /* KA-48, KA-49: poses from names. Contributions to one channel add, then clamp. */
 #include "anim/pose_names.h"
 #include "asset/names.h"
+#include "asset/vocabulary.h"
 #include "base/text.h"
+#include "model/vocabulary.h"
 #include "risorius/timeline.h"
 
 #include <stdlib.h>
@@ -10,35 +12,12 @@
 #define MAX_VALUE 1000.0 /* beyond every channel; keeps sums finite */
 #define MAX_NESTING 2    /* an expression may name expressions that are made of channels */
 
-static bool add_channel(const ris_model *model, const char *name, float value, float *pose)
-{
-    bool found = false;
-    for (uint32_t i = 0; i < model->channel_count; i++) {
-        if (strcmp(model->channel[i].name, name) == 0) {
-            pose[i] += value;
-            return true;
-        }
-    }
-    for (uint32_t i = 0; i < model->channel_count; i++) {
-        if (ris__name_is_side_of(model->channel[i].name, name)) {
-            pose[i] += value;
-            found = true;
-        }
-    }
-    return found;
-}
-
 static const char *expand(const ris_pose_names *names, const char *name, float value, int depth, float *pose)
 {
     const ris_head *head = names->model->head;
     ris_pose_names inner = *names;
-    char own[RIS_NAME_SIZE];
-    if (add_channel(names->model, name, value, pose) ||
-        (ris__name_of_synonym(name, own) && add_channel(names->model, own, value, pose))) {
+    if (ris__model_add_channel(names->model, name, value, pose)) {
         return NULL;
-    }
-    if (depth == MAX_NESTING) {
-        return name;
     }
     const ris_expression *found =
         ris__expression_find(names->clip_expression, names->clip_expression_count, name);
@@ -47,6 +26,9 @@ static const char *expand(const ris_pose_names *names, const char *name, float v
         inner.clip_expression_count = 0; /* the head's own terms mean the head's expressions */
     }
     if (!found) {
+        return ris__model_add_word(names->model, name, value, pose) ? NULL : name;
+    }
+    if (depth == MAX_NESTING) {
         return name;
     }
     for (uint32_t i = 0; i < found->term_count; i++) {
@@ -78,6 +60,7 @@ const char *ris__pose_nearest(const ris_pose_names *names, const char *name, cha
     for (uint32_t i = 0; i < names->model->channel_count; i++) {
         ris__nearest_add(&nearest, names->model->channel[i].name);
     }
+    ris__vocabulary_nearest(&names->model->vocabulary, &nearest);
     return ris__nearest_text(&nearest, out, size);
 }
 
@@ -87,9 +70,11 @@ ris_result ris_pose_add(const ris_model *model, const char *name, float value, f
     char nearest[256];
     const char *unknown = ris__pose_expand(&names, name, value, pose);
     if (unknown) {
-        return ris_fail(err, RIS_ERROR_USAGE,
-                        "\"%.63s\" is no muscle, channel or expression of this head; nearest: %s", unknown,
-                        ris__pose_nearest(&names, unknown, nearest, sizeof nearest));
+        return ris_fail(
+            err, RIS_ERROR_USAGE,
+            "\"%.63s\" is no muscle, channel, unit, shape, viseme or expression of this head; nearest: "
+            "%s",
+            unknown, ris__pose_nearest(&names, unknown, nearest, sizeof nearest));
     }
     return RIS_OK;
 }

@@ -2,6 +2,7 @@
 #include "asset/channel.h"
 #include "asset/head_parts.h"
 #include "asset/names.h"
+#include "asset/vocabulary.h"
 #include "base/file.h"
 
 #include <errno.h>
@@ -159,8 +160,13 @@ ris_result ris__head_expressions_read(const ris_json *json, ris_head *head, ris_
             channel[count++] = protrude[i];
         }
     }
-    ris_scope scope = {.channel = channel, .channel_count = count};
-    result = ris__expressions_read(&list, &scope, &head->expression, &head->expression_count, err);
+    ris_vocabulary vocabulary;
+    result = ris__vocabulary_read(ris__vocabulary_file, &vocabulary, err);
+    if (result == RIS_OK) {
+        ris_scope scope = {.channel = channel, .channel_count = count, .vocabulary = &vocabulary};
+        result = ris__expressions_read(&list, &scope, &head->expression, &head->expression_count, err);
+    }
+    ris__vocabulary_finish(&vocabulary);
     free(channel);
     free(protrude);
     return result;

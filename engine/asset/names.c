@@ -1,5 +1,6 @@
 /* Names of muscles, channels and expressions (docs/file-formats.md). */
 #include "asset/names.h"
+#include "asset/vocabulary.h"
 
 #include <ctype.h>
 #include <stdlib.h>
@@ -93,16 +94,23 @@ const ris_expression *ris__expression_find(const ris_expression *expression, uin
     return NULL;
 }
 
-/* What other kind of thing the name means, or NULL if it may be an expression. */
-static const char *other_kind(const ris_scope *scope, const char *name)
+bool ris__name_turns_sign(const char *name)
+{
+    static const char *const odd[] = {"jaw.side", "eye.yaw", "head.yaw", "head.roll", "head.x"};
+    for (size_t k = 0; k < sizeof odd / sizeof *odd; ++k) {
+        if (strcmp(name, odd[k]) == 0 || ris__name_is_side_of(name, odd[k])) {
+            return true;
+        }
+    }
+    return false;
+}
+
+const char *ris__name_reserved(const char *name)
 {
     bool upper = false, joined = false;
     for (const char *p = name; *p; p++) {
         upper = upper || is_upper(*p);
         joined = joined || *p == '_' || *p == '-' || *p == '.';
-    }
-    if (ris__scope_has_channel(scope, name)) {
-        return "a muscle or channel";
     }
     if (name[0] == 'A' && name[1] == 'U' && is_digit(name[2])) {
         return "an action unit";
@@ -119,7 +127,8 @@ static const char *other_kind(const ris_scope *scope, const char *name)
 static ris_result check_expression_name(const ris_json_at *at, const ris_scope *scope, ris_error *err)
 {
     size_t length = strlen(at->key), body = length - (ris__name_is_sided(at->key) ? 2 : 0);
-    const char *kind = other_kind(scope, at->key);
+    const char *kind =
+        ris__scope_has_channel(scope, at->key) ? "a muscle or channel" : ris__name_reserved(at->key);
     if (kind) {
         return ris__json_fail(at, err, "an expression may not carry the name of %s", kind);
     }
@@ -136,15 +145,17 @@ static ris_result check_expression_name(const ris_json_at *at, const ris_scope *
     return RIS_OK;
 }
 
-static ris_result read_terms(const ris_json_at *at, ris_expression *out, ris_error *err)
+ris_result ris__terms_read(const ris_json_at *at, ris_term **out, uint32_t *out_count, ris_error *err)
 {
+    *out = NULL;
+    *out_count = 0;
     const char *key;
     json_t *value;
     if (!json_is_object(at->value) || json_object_size(at->value) > MAX_TERMS) {
         return ris__json_expected(at, err, "an object of channels and values");
     }
-    out->term = calloc(json_object_size(at->value) + 1, sizeof *out->term);
-    if (!out->term) {
+    *out = calloc(json_object_size(at->value) + 1, sizeof **out);
+    if (!*out) {
         return ris_fail(err, RIS_ERROR_MEMORY, "%s: no memory for an expression", at->json->name);
     }
     json_object_foreach(at->value, key, value)
@@ -153,20 +164,22 @@ static ris_result read_terms(const ris_json_at *at, ris_expression *out, ris_err
         if (strlen(key) >= RIS_NAME_SIZE) {
             return ris__json_fail(&term, err, "expected a name of at most %d bytes", RIS_NAME_SIZE - 1);
         }
-        ris_result result = ris__json_float(&term, RIS_JSON_REQUIRED, -MAX_VALUE, MAX_VALUE,
-                                            &out->term[out->term_count].value, err);
+        ris_result result =
+            ris__json_float(&term, RIS_JSON_REQUIRED, -MAX_VALUE, MAX_VALUE, &(*out)[*out_count].value, err);
         if (result != RIS_OK) {
             return result;
         }
-        strcpy(out->term[out->term_count++].channel, key);
+        strcpy((*out)[(*out_count)++].channel, key);
     }
     return RIS_OK;
 }
 
+/* Channels and words of the vocabulary, that is: nothing that could come back to an expression. */
 static bool made_of_channels(const ris_scope *scope, const ris_expression *expression)
 {
     for (uint32_t i = 0; i < expression->term_count; i++) {
-        if (!ris__scope_has_channel(scope, expression->term[i].channel)) {
+        const char *name = expression->term[i].channel;
+        if (!ris__scope_has_channel(scope, name) && !ris__vocabulary_has(scope->vocabulary, name)) {
             return false;
         }
     }
@@ -187,6 +200,9 @@ static ris_result check_terms(const ris_json_at *at, const ris_scope *scope, con
         }
         const ris_expression *other = ris__expression_find(all, count, name);
         other = other ? other : ris__expression_find(scope->outer, scope->outer_count, name);
+        if (!other && ris__vocabulary_has(scope->vocabulary, name)) {
+            continue;
+        }
         if (other && made_of_channels(scope, other)) {
             continue;
         }
@@ -200,7 +216,9 @@ static ris_result check_terms(const ris_json_at *at, const ris_scope *scope, con
         for (uint32_t e = 0; e < count; e++) {
             ris__nearest_add(&nearest, all[e].name);
         }
-        return ris__json_fail(&term, err, "unknown muscle, channel or expression; nearest: %s",
+        ris__vocabulary_nearest(scope->vocabulary, &nearest);
+        return ris__json_fail(&term, err,
+                              "unknown muscle, channel, unit, shape, viseme or expression; nearest: %s",
                               ris__nearest_text(&nearest, names, sizeof names));
     }
     return RIS_OK;
@@ -231,7 +249,7 @@ ris_result ris__expressions_read(const ris_json_at *at, const ris_scope *scope, 
         }
         strcpy(expression->name, key);
         (*out_count)++;
-        if ((result = read_terms(&item, expression, err))) {
+        if ((result = ris__terms_read(&item, &expression->term, &expression->term_count, err))) {
             return result;
         }
     }

@@ -6,18 +6,6 @@
 
 #define PAIR_MM 1e-3f /* a partner stands this near to the mirrored place at rest */
 
-/* Whose sign a mirror changes, sided or not. */
-static bool turns_sign(const char *name)
-{
-    static const char *const odd[] = {"jaw.side", "eye.yaw", "head.yaw", "head.roll", "head.x"};
-    for (size_t k = 0; k < sizeof odd / sizeof *odd; ++k) {
-        if (strcmp(name, odd[k]) == 0 || ris__name_is_side_of(name, odd[k])) {
-            return true;
-        }
-    }
-    return false;
-}
-
 void ris__measure_mirror_pose(const ris_model *model, const float *pose, float *out)
 {
     for (uint32_t c = 0; c < model->channel_count; ++c) {
@@ -28,7 +16,7 @@ void ris__measure_mirror_pose(const ris_model *model, const float *pose, float *
                 from = k;
             }
         }
-        out[c] = turns_sign(name) ? 0.0f - pose[from] : pose[from];
+        out[c] = ris__name_turns_sign(name) ? 0.0f - pose[from] : pose[from];
     }
 }
 

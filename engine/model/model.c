@@ -1,5 +1,6 @@
 /* Bake of a head into a flat const model: the order of the builders, and its end. KA-01, KA-09, KA-48. */
 #include "asset/channel.h"
+#include "asset/vocabulary.h"
 #include "base/clock.h"
 #include "model_impl.h"
 
@@ -90,6 +91,7 @@ ris_result ris_model_create(const ris_head *head, ris_model **out, ris_error *er
         {ris__bake_contact, false},
         {ris__bake_push, false},
         {ris__bake_channels, false},
+        {ris__bake_vocabulary, false},
         /* clang-format on */
     };
     *out = NULL;
@@ -184,6 +186,7 @@ void ris_model_destroy(ris_model *model)
     free(model->lining);
     free(model->fat);
     free(model->slide);
+    ris__vocabulary_finish(&model->vocabulary);
     if (model->owned_head) {
         ris_head_finish(model->owned_head);
         free(model->owned_head);

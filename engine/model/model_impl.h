@@ -90,6 +90,8 @@ ris_result ris__bake_contact(ris_bake *bake, ris_error *err);
 ris_result ris__bake_push(ris_bake *bake, ris_error *err);
 /* KA-48: the channel table. */
 ris_result ris__bake_channels(ris_bake *bake, ris_error *err);
+/* KA-55, KA-57: the vocabularies, as channels of this model. */
+ris_result ris__bake_vocabulary(ris_bake *bake, ris_error *err);
 
 /* Node -> true for the vertices of a region; flags are added to, (node_count). */
 void ris__region_flags(const ris_head *head, const char *name, bool *flags);

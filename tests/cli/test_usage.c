@@ -146,6 +146,21 @@ static void a_full_standard_output_is_an_error(void **state)
     assert_non_null(strstr(run.err, "standard output"));
 }
 
+/* The tables of docs/facs.md are what the command prints. */
+static void the_document_lists_the_vocabulary(void **state)
+{
+    (void)state;
+    static const char mark[] = "<!-- names -->\n";
+    char *text = command_read_file(RIS_SOURCE_DIR "/docs/facs.md");
+    assert_non_null(text);
+    const char *tables = strstr(text, mark);
+    assert_non_null(tables);
+    expect("info " HEAD " --names", 0, NULL);
+    assert_non_null(strstr(run.out, "| `AU12` | Lip Corner Puller | zygomaticus_major 1 |"));
+    assert_string_equal(tables + strlen(mark), run.out);
+    free(text);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -156,6 +171,7 @@ int main(void)
         cmocka_unit_test(absurd_numbers_are_usage_errors),
         cmocka_unit_test(a_program_beside_it_is_a_command),
         cmocka_unit_test(a_full_standard_output_is_an_error),
+        cmocka_unit_test(the_document_lists_the_vocabulary),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -209,7 +209,8 @@ static void test_refuses(void **state)
         {CLIP("{\"target\":\"jaw.open\"}"), "tracks[0]: expected the key \"keys\""},
         {CLIP("{\"keys\":[]}"), "tracks[0]: expected the key \"target\""},
         {CLIP("\n" TRACK("zygomaticus_mayor", "{\"t\":0,\"v\":0}")),
-         "t.json:2:11: tracks[0].target: unknown muscle, channel or expression \"zygomaticus_mayor\"; "
+         "t.json:2:11: tracks[0].target: unknown muscle, channel, unit, shape, viseme or expression "
+         "\"zygomaticus_mayor\"; "
          "nearest: zygomaticus_major.L, zygomaticus_major.R"},
         {CLIP(TRACK("jaw.open", "{\"t\":1,\"v\":0},{\"t\":1,\"v\":0}")),
          "tracks[0].keys[1].t: expected a time after the key before (1 s), found 1"},
@@ -223,7 +224,8 @@ static void test_refuses(void **state)
          "tracks[0].keys[0].ease: expected one of step, linear, cubic, found \"bounce\""},
         {CLIP(TRACK("jaw.open", "{\"t\":0,\"v\":1,\"w\":1}")), "tracks[0].keys[0].w: unknown key"},
         {START "\"expressions\":{\"a\":{\"jaw.opn\":1}},\"tracks\":[]}",
-         "expressions.a.jaw.opn: unknown muscle, channel or expression; nearest: jaw.open"},
+         "expressions.a.jaw.opn: unknown muscle, channel, unit, shape, viseme or expression; nearest: "
+         "jaw.open"},
         {START "\"expressions\":{\"zygomaticus_major\":{}},\"tracks\":[]}",
          "may not carry the name of a muscle or channel"},
         {START "\"labels\":[{\"t\":1,\"name\":\"a\"},{\"t\":1,\"name\":\"b\"}],\"tracks\":[" TRACK(

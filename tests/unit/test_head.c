@@ -520,9 +520,9 @@ static void test_refuses_muscles(void **state)
 static void test_refuses_expressions(void **state)
 {
     (void)state;
-    expect_refused(
-        "expressions.json", EXPRESSIONS_HEAD "{\"smile\":{\"risoris\":1}}}",
-        "expressions.smile.risoris: unknown muscle, channel or expression; nearest: risorius.R, risorius.L");
+    expect_refused("expressions.json", EXPRESSIONS_HEAD "{\"smile\":{\"risoris\":1}}}",
+                   "expressions.smile.risoris: unknown muscle, channel, unit, shape, viseme or expression; "
+                   "nearest: risorius.R, risorius.L");
     expect_refused("expressions.json", EXPRESSIONS_HEAD "{\"smile\":{\"risorius\":\"x\"}}}",
                    "expressions.smile.risorius: expected a number");
     expect_refused("expressions.json", EXPRESSIONS_HEAD "{\"risorius\":{}}}",

@@ -184,6 +184,39 @@ typedef struct ris_expression {
     ris_term *term;
 } ris_expression;
 
+/* The vocabularies: action units of FACS, ARKit's shapes, visemes, the expression library. */
+typedef enum ris_word_kind {
+    RIS_WORD_UNIT,
+    RIS_WORD_SHAPE,
+    RIS_WORD_VISEME,
+    RIS_WORD_EXPRESSION,
+    RIS_WORD_KINDS
+} ris_word_kind;
+
+/* What a channel of a model gets. */
+typedef struct ris_channel_value {
+    uint32_t channel;
+    float value; /* file units */
+} ris_channel_value;
+
+/* A name of a vocabulary with what it is made of: a unit of channels, all others of units and channels. */
+typedef struct ris_word {
+    char name[RIS_NAME_SIZE];
+    ris_word_kind kind;
+    char *title, *source; /* never NULL; source may be empty */
+    uint32_t term_count;
+    ris_term *term;
+    /* on a model (ris_model.vocabulary): the terms as its channels, and how many terms it has no channel for */
+    uint32_t value_count, missing_count;
+    ris_channel_value *value;
+    bool symmetric; /* does the same on both sides */
+} ris_word;
+
+typedef struct ris_vocabulary {
+    uint32_t word_count;
+    ris_word *word; /* by kind, then in the order of its file (word_count) */
+} ris_vocabulary;
+
 typedef struct ris_head {
     char *directory; /* as given */
     ris_mesh skin;

@@ -187,6 +187,8 @@ typedef struct ris_model {
     const float *jaw_weight;          /* (node_count) */
     float *jaw_slide_weight;          /* the same for slides of the jaw; NULL = jaw_weight (node_count) */
 
+    ris_vocabulary vocabulary; /* KA-55; the same for all heads, its values are this model's channels */
+
     double bake_ms,
         muscle_bake_ms; /* what ris_model_create took, and its part from muscle grids to bindings */
 } ris_model;

@@ -1,0 +1,147 @@
+/* KA-55, KA-57, KU-31: the vocabularies as channels of a model. A term whose channel the head lacks is left out. */
+#include "model/vocabulary.h"
+
+#include "asset/names.h"
+#include "asset/vocabulary.h"
+#include "model_impl.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static bool add_named(const ris_model *model, const char *name, float value, float *pose)
+{
+    bool found = false;
+    uint32_t own = ris_model_channel(model, name);
+    if (own != UINT32_MAX) {
+        pose[own] += value;
+        return true;
+    }
+    for (uint32_t i = 0; i < model->channel_count; i++) {
+        if (ris__name_is_side_of(model->channel[i].name, name)) {
+            pose[i] += value;
+            found = true;
+        }
+    }
+    return found;
+}
+
+bool ris__model_add_channel(const ris_model *model, const char *name, float value, float *pose)
+{
+    char own[RIS_NAME_SIZE];
+    return add_named(model, name, value, pose) ||
+           (ris__name_of_synonym(name, own) && add_named(model, own, value, pose));
+}
+
+uint32_t ris__model_mirror_channel(const ris_model *model, uint32_t c)
+{
+    for (uint32_t k = 0; ris__name_is_sided(model->channel[c].name) && k < model->channel_count; k++) {
+        if (ris__name_is_opposite(model->channel[k].name, model->channel[c].name)) {
+            return k;
+        }
+    }
+    return c;
+}
+
+/* One side of a word. Of what does the same on both sides: the channels of that side, and half of those without one,
+ * so that both halves make the whole. What is written for one side is written for the left: .L is it, .R its mirror
+ * image. */
+static void add_side(const ris_model *model, const ris_word *word, char side, float value, float *pose)
+{
+    for (uint32_t i = 0; i < word->value_count; i++) {
+        const uint32_t c = word->value[i].channel;
+        const char *name = model->channel[c].name;
+        const float v = value * word->value[i].value;
+        if (word->kind == RIS_WORD_EXPRESSION && !word->symmetric) {
+            if (side == 'L') {
+                pose[c] += v;
+            } else {
+                pose[ris__model_mirror_channel(model, c)] += ris__name_turns_sign(name) ? -v : v;
+            }
+        } else if (!ris__name_is_sided(name)) {
+            pose[c] += 0.5f * v;
+        } else if (name[strlen(name) - 1] == side) {
+            pose[c] += v;
+        }
+    }
+}
+
+static bool add_word(const ris_model *model, const char *name, float value, float *pose)
+{
+    char side;
+    const ris_word *word = ris__vocabulary_find(&model->vocabulary, name, &side);
+    if (!word) {
+        return false;
+    }
+    if (side) {
+        add_side(model, word, side, value, pose);
+        return true;
+    }
+    for (uint32_t i = 0; i < word->value_count; i++) {
+        pose[word->value[i].channel] += value * word->value[i].value;
+    }
+    return true;
+}
+
+bool ris__model_add_word(const ris_model *model, const char *name, float value, float *pose)
+{
+    ris_unit unit[RIS_UNITS_MAX];
+    if (!ris__vocabulary_has(&model->vocabulary, name)) {
+        return false;
+    }
+    const uint32_t count = ris__units_split(name, unit);
+    for (uint32_t i = 0; i < count; i++) {
+        add_word(model, unit[i].name, value * unit[i].factor, pose);
+    }
+    return count > 0 || add_word(model, name, value, pose);
+}
+
+static bool is_symmetric(const ris_model *model, const float *pose)
+{
+    for (uint32_t c = 0; c < model->channel_count; c++) {
+        const float other = pose[ris__model_mirror_channel(model, c)];
+        if (pose[c] != (ris__name_turns_sign(model->channel[c].name) ? -other : other)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static ris_result resolve(ris_model *model, ris_word *word, float *pose, ris_error *err)
+{
+    uint32_t count = 0;
+    memset(pose, 0, model->channel_count * sizeof *pose);
+    for (uint32_t i = 0; i < word->term_count; i++) {
+        const char *name = word->term[i].channel;
+        const float value = word->term[i].value;
+        word->missing_count += !ris__model_add_channel(model, name, value, pose) &&
+                               !ris__model_add_word(model, name, value, pose);
+    }
+    for (uint32_t c = 0; c < model->channel_count; c++) {
+        count += pose[c] != 0;
+    }
+    ris_result result = ris__model_alloc(&word->value, count, sizeof *word->value, "a vocabulary", err);
+    for (uint32_t c = 0; c < model->channel_count && result == RIS_OK; c++) {
+        if (pose[c] != 0) {
+            word->value[word->value_count++] = (ris_channel_value){c, pose[c]};
+        }
+    }
+    word->symmetric = is_symmetric(model, pose);
+    return result;
+}
+
+ris_result ris__vocabulary_resolve(ris_model *model, ris_error *err)
+{
+    float *pose;
+    ris_result result = ris__model_alloc(&pose, model->channel_count, sizeof *pose, "a pose", err);
+    for (uint32_t i = 0; i < model->vocabulary.word_count && result == RIS_OK; i++) {
+        result = resolve(model, &model->vocabulary.word[i], pose, err);
+    }
+    free(pose);
+    return result;
+}
+
+ris_result ris__bake_vocabulary(ris_bake *bake, ris_error *err)
+{
+    ris_result result = ris__vocabulary_read(ris__vocabulary_file, &bake->model->vocabulary, err);
+    return result ? result : ris__vocabulary_resolve(bake->model, err);
+}
