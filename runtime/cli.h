@@ -24,7 +24,7 @@ typedef struct cli_command {
 } cli_command;
 
 extern const cli_command cmd_devices, cmd_info, cmd_render, cmd_export, cmd_compare, cmd_bench, cmd_soak,
-    cmd_score, cmd_validate, cmd_view, cmd_plate;
+    cmd_score, cmd_validate, cmd_view, cmd_plate, cmd_sheet;
 
 #define CLI_LIST_SIZE 8
 

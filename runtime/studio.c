@@ -41,6 +41,22 @@ struct ris_studio {
     uint8_t *view, *picture;            /* one view, and all side by side (the same when there is one) */
 };
 
+/* Nearer by zoom, and aimed the more at the base of the nose. */
+static void go_nearer(ris_camera *camera, const ris_head *head, float zoom)
+{
+    const ris_landmark *nose = ris_head_landmark(head, "sn", false);
+    const ris_vec3 at = nose ? nose->at : camera->target,
+                   away = {camera->eye.x - camera->target.x, camera->eye.y - camera->target.y,
+                           camera->eye.z - camera->target.z};
+    const float share = 1.0f - 1.0f / zoom;
+    camera->target.x += share * (at.x - camera->target.x);
+    camera->target.y += share * (at.y - camera->target.y);
+    camera->target.z += share * (at.z - camera->target.z);
+    camera->eye.x = camera->target.x + away.x / zoom;
+    camera->eye.y = camera->target.y + away.y / zoom;
+    camera->eye.z = camera->target.z + away.z / zoom;
+}
+
 ris_result studio_create(const ris_backend *backend, const studio_views *views, uint32_t width,
                          uint32_t height, const studio_look *look, ris_studio **out, ris_error *err)
 {
@@ -58,6 +74,9 @@ ris_result studio_create(const ris_backend *backend, const studio_views *views, 
         if (!ris_camera_named(backend->model, views->name[i], &s->camera[i])) {
             r = ris_fail(err, RIS_ERROR_USAGE, "there is no view '%s' of this head", views->name[i]);
             goto fail;
+        }
+        if (look->zoom > 0.0f) {
+            go_nearer(&s->camera[i], backend->model->head, look->zoom);
         }
     }
     size_t pixels = (size_t)width * height;

@@ -18,6 +18,7 @@ ris_result studio_views_parse(const char *text, studio_views *out, ris_error *er
 typedef struct studio_look {
     bool wireframe;
     uint32_t layers; /* of risorius/draw.h; 0 = skin */
+    float zoom;      /* 0 = as the views frame the head; above 1 nearer to its nose and mouth */
     bool labels;     /* names of what the layers show, and their colour scales */
 } studio_look;
 

@@ -35,6 +35,13 @@ static ris_result run_plate(ris_cli *cli, int argc, char **argv, ris_error *err)
     return refuse(cli, &cmd_plate, argc, argv, err);
 }
 
+static ris_result run_sheet(ris_cli *cli, int argc, char **argv, ris_error *err)
+{
+    return refuse(cli, &cmd_sheet, argc, argv, err);
+}
+
+const cli_command cmd_sheet = {
+    .name = "sheet", .usage = "HEAD -o FILE.png", .summary = "(needs Vulkan)", .run = run_sheet};
 const cli_command cmd_plate = {
     .name = "plate", .usage = "HEAD -o FILE.png", .summary = "(needs Vulkan)", .run = run_plate};
 const cli_command cmd_view = {.name = "view", .usage = "HEAD", .summary = "(needs Vulkan)", .run = run_view};

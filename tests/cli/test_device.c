@@ -140,6 +140,42 @@ static void a_plate_names_every_muscle(void **state)
     expect("plate", NULL, "plate " HEAD " -o x.png --size 100x100", 2, 0);
 }
 
+/* Four poses, shuffled: the key tells which is which, the same seed gives the same picture, names hide nothing else. */
+static void a_sheet_shuffles_and_keeps_the_key(void **state)
+{
+    (void)state;
+    static const char line[] =
+        "--device cpu sheet " HEAD " --poses jaw.open=1;AU12=1;AU1=1;AU43=1 --size 64x72 "
+        "--view front --columns 2 -o x.png --key key.txt --hide-names -q --shuffle";
+    char text[2048], path[COMMAND_PATH_SIZE + 16];
+    picture shot[2];
+    for (int k = 0; k < 2; k++) {
+        snprintf(text, sizeof text, "%s 7", line);
+        expect("sheet", NULL, text, 0, 2);
+        load_picture("x.png", &shot[k]);
+    }
+    assert_int_equal(shot[0].width, 128);
+    assert_int_equal(shot[0].height, 2 * (72 + 26));
+    assert_memory_equal(shot[0].rgba, shot[1].rgba, (size_t)shot[0].width * (size_t)shot[0].height * 4);
+    snprintf(path, sizeof path, "%s/key.txt", folder);
+    char *key = command_read_file(path);
+    assert_non_null(key);
+    assert_non_null(strstr(key, " jaw.open=1\n"));
+    assert_non_null(strstr(key, " AU43=1\n"));
+    snprintf(text, sizeof text, "%s 8", line);
+    expect("sheet", NULL, text, 0, 2);
+    char *other = command_read_file(path);
+    assert_non_null(other);
+    assert_string_not_equal(key, other);
+    free(key);
+    free(other);
+    picture_finish(&shot[0]);
+    picture_finish(&shot[1]);
+    expect("sheet", NULL, "sheet " HEAD " --set smiles -o x.png", 2, 0);
+    expect("sheet", NULL, "sheet " HEAD " --poses AU12=1;AU99=1 -o x.png", 2, 0);
+    expect("sheet", NULL, "sheet " HEAD " --poses AU12=1; -o x.png", 2, 0);
+}
+
 /* A clip of half a second whose jaw opens. */
 static void write_short_clip(char out[COMMAND_PATH_SIZE + 16])
 {
@@ -268,6 +304,7 @@ int main(void)
         cmocka_unit_test(a_pose_gives_a_picture),
         cmocka_unit_test(layers_give_other_pictures),
         cmocka_unit_test(a_plate_names_every_muscle),
+        cmocka_unit_test(a_sheet_shuffles_and_keeps_the_key),
         cmocka_unit_test(a_clip_gives_all_outputs_at_once),
         cmocka_unit_test(a_full_disk_leaves_nothing),
         cmocka_unit_test(without_ffmpeg_a_video_fails),

@@ -15,8 +15,8 @@
 
 static run_result run;
 
-static const char *const commands[] = {"devices", "info",  "view", "render",   "export",
-                                       "compare", "bench", "soak", "validate", "plate"};
+static const char *const commands[] = {"devices", "info", "view",     "render", "export", "compare",
+                                       "bench",   "soak", "validate", "plate",  "sheet"};
 
 static void expect(const char *line, int code, const char *in_err)
 {
@@ -146,6 +146,18 @@ static void a_full_standard_output_is_an_error(void **state)
     assert_non_null(strstr(run.err, "standard output"));
 }
 
+static void a_sheet_needs_its_words(void **state)
+{
+    (void)state;
+    expect("sheet " HEAD " --set facs", 2, "sheet needs -o FILE.png");
+    expect("sheet " HEAD " -o x.png", 2, "sheet needs --set NAME or --poses LIST");
+    expect("sheet " HEAD " -o x.png --set facs --poses AU1=1", 2, "not both");
+    expect("sheet " HEAD " -o x.png --set facs --hide-names", 2, "--hide-names needs --key FILE");
+    expect("sheet " HEAD " -o x.png --set facs --key x.png", 2, "named as two outputs");
+    expect("sheet " HEAD " -o x.png --set facs --zoom 0", 2, "zoom");
+    expect("sheet " HEAD " -o x.png --set facs --shuffle x", 2, "shuffle");
+}
+
 /* The tables of docs/facs.md are what the command prints. */
 static void the_document_lists_the_vocabulary(void **state)
 {
@@ -171,6 +183,7 @@ int main(void)
         cmocka_unit_test(absurd_numbers_are_usage_errors),
         cmocka_unit_test(a_program_beside_it_is_a_command),
         cmocka_unit_test(a_full_standard_output_is_an_error),
+        cmocka_unit_test(a_sheet_needs_its_words),
         cmocka_unit_test(the_document_lists_the_vocabulary),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
