@@ -12,6 +12,7 @@ const ris_beside_channel ris__beside_channel[] = {
     {"head.pitch", -60, 60}, {"head.roll", -45, 45},   {"head.x", -200, 200},    {"head.y", -200, 200},
     {"head.z", -200, 200},   {"lid.upper.L", -1, 1},   {"lid.upper.R", -1, 1},   {"lid.lower.L", -1, 1},
     {"lid.lower.R", -1, 1},  {"tongue.out", 0, 1},     {"tongue.tip", -1, 1},    {"tongue.wide", -1, 1},
+    {"cheek.puff.L", -1, 1}, {"cheek.puff.R", -1, 1},
 };
 const uint32_t ris__beside_channel_count = sizeof ris__beside_channel / sizeof ris__beside_channel[0];
 

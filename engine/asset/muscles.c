@@ -39,6 +39,8 @@ static const char *const record_keys[] = {"name",
                                           "fat_radius_mm",
                                           "onset_ms",
                                           "release_ms",
+                                          "puff_mm",
+                                          "puff_radius_mm",
                                           NULL};
 
 static double distance(const ris_vec3 *a, const ris_vec3 *b)
@@ -215,6 +217,7 @@ static ris_result read_numbers(const ris_json_at *at, ris_muscle_def *def, ris_e
                 shortening = ris__json_key(at, "max_shortening");
     ris_json_at radius = ris__json_key(at, "radius_mm"), start = ris__json_key(at, "insertion_start");
     ris_json_at drag = ris__json_key(at, "lip_drag_power"), gain = ris__json_key(at, "gain");
+    ris_json_at puff = ris__json_key(at, "puff_mm"), puff_radius = ris__json_key(at, "puff_radius_mm");
     ris_json_at fat = ris__json_key(at, "fat"), fat_radius = ris__json_key(at, "fat_radius_mm");
     ris_result result;
     def->thickness_mm[0] = 2;
@@ -224,18 +227,24 @@ static ris_result read_numbers(const ris_json_at *at, ris_muscle_def *def, ris_e
     def->insertion_start = 0.5f;
     def->gain = 1.2f;
     def->fat_radius_mm = 15;
+    def->puff_radius_mm = 20;
     if ((result = ris__json_floats(&thickness, RIS_JSON_OPTIONAL, 2, 0.01, 50, def->thickness_mm, err)) ||
         (result = ris__json_float(&shortening, RIS_JSON_OPTIONAL, 0, 0.30, &def->max_shortening, err)) ||
         (result = ris__json_float(&radius, RIS_JSON_OPTIONAL, 0.1, 100, &def->radius_mm, err)) ||
         (result = ris__json_float(&start, RIS_JSON_OPTIONAL, 0, 0.99, &def->insertion_start, err)) ||
         (result = ris__json_float(&fat, RIS_JSON_OPTIONAL, 0, 10, &def->fat, err)) ||
         (result = ris__json_float(&fat_radius, RIS_JSON_OPTIONAL, 0.1, 100, &def->fat_radius_mm, err)) ||
+        (result = ris__json_float(&puff, RIS_JSON_OPTIONAL, 0, 50, &def->puff_mm, err)) ||
+        (result = ris__json_float(&puff_radius, RIS_JSON_OPTIONAL, 0.1, 100, &def->puff_radius_mm, err)) ||
         (result = ris__json_float(&drag, RIS_JSON_OPTIONAL, 0, 64, &def->lip_drag_power, err)) ||
         (result = ris__json_float(&gain, RIS_JSON_OPTIONAL, 0, 10, &def->gain, err))) {
         return result;
     }
     if (def->thickness_mm[1] < def->thickness_mm[0]) {
         return ris__json_expected(&thickness, err, "the least thickness first, then the greatest");
+    }
+    if (def->puff_mm > 0 && !ris__name_is_sided(def->name)) {
+        return ris__json_expected(&puff, err, "0 for a muscle without a side");
     }
     return RIS_OK;
 }

@@ -12,14 +12,7 @@
 #define FACING_NONE 0.2f /* the side of the nose looks away from the cheek */
 #define LIFT 0.7f        /* of a rise goes along the muscle, towards its fixed end */
 
-/* A node over a muscle. */
-typedef struct pad_place {
-    float along, beside_mm, fat_mm; /* share of the length; tangential distance; between muscle and skin */
-    float facing;                   /* n of the skin . away from the muscle */
-    ris_vec3 pull;                  /* unit, towards the fixed end */
-} pad_place;
-
-static float muscle_length(const ris_model *model, const ris_muscle *muscle)
+float ris__muscle_length(const ris_model *model, const ris_muscle *muscle)
 {
     float length = 0.0f;
     for (uint32_t i = 1; i < muscle->point_count; ++i) {
@@ -38,12 +31,10 @@ static float half_thickness(const ris_model *model, const ris_muscle *muscle)
     return 0.5f * sum / (float)muscle->fiber_count;
 }
 
-static bool find_place(const ris_bake *bake, const ris_muscle *muscle, uint32_t node, float length,
-                       pad_place *out)
+bool ris__find_over_muscle(const ris_model *model, const ris_muscle *muscle, uint32_t node, float length,
+                           ris_over_muscle *out)
 {
-    const ris_model *model = bake->model;
     const ris_vec3 x = v4_xyz(model->rest_position[node]), n = v4_xyz(model->rest_normal[node]);
-    const float half = half_thickness(model, muscle);
     float own = 0.0f, best = INFINITY;
     for (uint32_t i = 0; i + 1 < muscle->point_count; ++i) {
         const ris_vec3 a = ris__muscle_point(model, muscle, model->fiber_point, i),
@@ -57,7 +48,7 @@ static bool find_place(const ris_bake *bake, const ris_muscle *muscle, uint32_t 
             out->facing = out_mm / v3_length(r);
             out->along = (own + s * step) / length;
             out->beside_mm = beside;
-            out->fat_mm = f_clamp(out_mm - half - bake->head->tissue.skin_mm, 0.0f, FAT_MAX_MM);
+            out->out_mm = out_mm;
             out->pull = v3_scale(ab, -1.0f / step);
         }
         own += step;
@@ -77,16 +68,18 @@ static void find_pad(ris_bake *bake, uint32_t m, const bool *apart)
 {
     ris_model *model = bake->model;
     const ris_muscle *muscle = &model->muscle[m];
-    const float reach = muscle->def->fat_radius_mm, length = muscle_length(model, muscle);
+    const float half = half_thickness(model, muscle);
+    const float reach = muscle->def->fat_radius_mm, length = ris__muscle_length(model, muscle);
     for (uint32_t i = 0; i < model->node_count; ++i) {
-        pad_place place = {0};
-        if (!bake->moving[i] || apart[i] || !find_place(bake, muscle, i, length, &place) ||
+        ris_over_muscle place = {0};
+        if (!bake->moving[i] || apart[i] || !ris__find_over_muscle(model, muscle, i, length, &place) ||
             !(place.beside_mm < reach)) {
             continue;
         }
         const float ratio = place.beside_mm / reach, bell = 1.0f - ratio * ratio;
         const float facing = f_smoothstep((place.facing - FACING_NONE) / (1.0f - FACING_NONE));
-        const float rise = muscle->def->fat * place.fat_mm * bell * bell * pad_window(place.along) * facing;
+        const float fat_mm = f_clamp(place.out_mm - half - bake->head->tissue.skin_mm, 0.0f, FAT_MAX_MM);
+        const float rise = muscle->def->fat * fat_mm * bell * bell * pad_window(place.along) * facing;
         if (rise > 1e-3f) {
             const ris_vec3 n = v4_xyz(model->rest_normal[i]);
             const ris_vec3 along_skin = v3_mad(place.pull, -v3_dot(place.pull, n), n);

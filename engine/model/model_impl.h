@@ -66,6 +66,20 @@ ris_result ris__bake_groups(ris_bake *bake, ris_error *err);
 ris_result ris__bake_slide(ris_bake *bake, ris_error *err);
 /* KA-47: nodes over muscles that gather fat. */
 ris_result ris__bake_fat(ris_bake *bake, ris_error *err);
+/* Nodes over the muscles that wall the mouth. */
+ris_result ris__bake_puff(ris_bake *bake, ris_error *err);
+/* A node of the skin over a linear muscle. */
+typedef struct ris_over_muscle {
+    float along, beside_mm,
+        out_mm;    /* share of the length; tangential distance; from the muscle's middle to the skin */
+    float facing;  /* n of the skin . away from the muscle */
+    ris_vec3 pull; /* unit, towards the fixed end */
+} ris_over_muscle;
+/* False if the node lies on the inner side of the muscle. length: ris__muscle_length. */
+bool ris__find_over_muscle(const ris_model *model, const ris_muscle *muscle, uint32_t node, float length,
+                           ris_over_muscle *out);
+/* Of the mean fibre at rest, mm. */
+float ris__muscle_length(const ris_model *model, const ris_muscle *muscle);
 /* Which ring of a lip a muscle of the lips ties to the bone. */
 ris_result ris__bake_ties(ris_bake *bake, ris_error *err);
 /* Nodes of the mouth's lining and what they follow. */

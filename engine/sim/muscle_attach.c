@@ -104,6 +104,18 @@ static void raise_fat(ris_rig *rig)
     }
 }
 
+/* Air in the mouth moves its walls. */
+static void puff_cheeks(ris_rig *rig)
+{
+    const ris_model *model = rig->model;
+    for (uint32_t k = 0; k < model->puff_count; ++k) {
+        const ris_puff_node *node = &model->puff[k];
+        const float pressure = rig->puff[node->side];
+        rig->move[node->node] =
+            v3_mad(rig->move[node->node], pressure, pressure < 0.0f ? node->sink_mm : node->rise_mm);
+    }
+}
+
 /* The lining of the mouth goes with the lips before it. */
 static void follow_lips(ris_rig *rig)
 {
@@ -175,6 +187,7 @@ void ris__muscle_attach(ris_rig *rig)
         }
     }
     raise_fat(rig);
+    puff_cheeks(rig);
     follow_lips(rig);
     for (uint32_t i = 0; i < model->node_count; ++i) {
         if (!(model->rest_position[i].w > 0.0f)) {

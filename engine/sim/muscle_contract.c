@@ -151,6 +151,9 @@ static ris_vec3 contract_ring(const ris_muscle *muscle, const ring_pose *ring, r
 void ris__muscle_contract(ris_rig *rig, const float *pose)
 {
     const ris_model *model = rig->model;
+    for (uint32_t side = 0; side < 2; ++side) {
+        rig->puff[side] = f_clamp(pose[rig->first_beside + RIS__CHEEK_PUFF_L + side], -1.0f, 1.0f);
+    }
     for (uint32_t m = 0; m < model->muscle_count; ++m) {
         const ris_muscle *muscle = &model->muscle[m];
         const float activation = f_clamp(pose[m], 0.0f, 1.0f);

@@ -26,7 +26,9 @@ enum {
     RIS__LID_LOWER_R,
     RIS__TONGUE_OUT,
     RIS__TONGUE_TIP,
-    RIS__TONGUE_WIDE
+    RIS__TONGUE_WIDE,
+    RIS__CHEEK_PUFF_L,
+    RIS__CHEEK_PUFF_R
 };
 
 /* x -> rotation (x - point) + point + shift; identity leaves bits alone. */
@@ -93,6 +95,7 @@ typedef struct ris_rig {
     float *activation;  /* 0..1 per muscle */
     float *activity;    /* min(1, activation / 0.1) per muscle */
     ris_vec3 *q;        /* deformed control points (fiber_point_count) */
+    float puff[2];      /* pressure in the left and right cheek, -1..1 */
     /* muscle_constrain */
     ris_drag *drag;    /* (2 x muscle_count): first and last end of sphincters */
     bool *constrained; /* per fibre point (fiber_point_count) */

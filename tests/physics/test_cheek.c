@@ -111,12 +111,36 @@ static void the_buccinator_presses_the_cheek(void **state)
     assert_true(height(x, cheek) > -0.5f);
 }
 
+/* cheek.puff: air bulges the cheek, of one side if asked, and leaves nose and eyes alone; suction hollows it by less. */
+static void air_puffs_the_cheek(void **state)
+{
+    (void)state;
+    const uint32_t left = nearest_outside(v3(42, -42, 64)), right = nearest_outside(v3(-42, -42, 64));
+    const uint32_t nose = nearest_outside(v3(0, -20, 110)), lid = nearest_outside(v3(30, 12, 85));
+    hold("cheek.puff=1");
+    const float puffed = height(x, left);
+    print_message("cheek.puff: %.2f mm out\n", (double)puffed);
+    assert_true(puffed > 6.0f && puffed < 14.0f);
+    assert_true(fabsf(height(x, right) - puffed) < 0.05f);
+    assert_true(fabsf(height(x, nose)) < 0.3f && fabsf(height(x, lid)) < 0.5f);
+    hold("cheek.puff=0.5");
+    assert_true(height(x, left) > 0.35f * puffed && height(x, left) < 0.65f * puffed);
+    hold("cheek.puff.L=1");
+    assert_true(height(x, left) > 0.9f * puffed && fabsf(height(x, right)) < 0.3f);
+    hold("cheek.puff=-1");
+    print_message("cheek.puff -1: %.2f mm in\n", (double)-height(x, left));
+    assert_true(height(x, left) < -2.0f && height(x, left) > -0.8f * puffed);
+    hold("cheek.puff=7"); /* clamped */
+    assert_true(fabsf(height(x, left) - puffed) < 0.05f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_smile_raises_the_cheek),
         cmocka_unit_test(a_held_corner_holds_the_fat),
         cmocka_unit_test(the_buccinator_presses_the_cheek),
+        cmocka_unit_test(air_puffs_the_cheek),
     };
     return cmocka_run_group_tests(tests, open_loaded_head, close_loaded_head);
 }

@@ -71,9 +71,9 @@ static uint32_t count_moved(const float *pose)
 static void test_every_unit(void **state)
 {
     (void)state;
-    static const int unit[] = {1,  2,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13, 14, 15, 16, 17, 18, 19,
-                               20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 31, 32, 33, 34, 35, 37, 38, 39,
-                               41, 42, 43, 44, 45, 46, 51, 52, 53, 54, 55, 56, 57, 58, 61, 62, 63, 64};
+    static const int unit[] = {1,  2,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20,
+                               21, 22, 23, 24, 25, 26, 27, 28, 29, 31, 32, 33, 34, 35, 36, 37, 38, 39, 41,
+                               42, 43, 44, 45, 46, 51, 52, 53, 54, 55, 56, 57, 58, 61, 62, 63, 64};
     float pose[MAX_CHANNELS];
     for (size_t k = 0; k < sizeof unit / sizeof *unit; k++) {
         char text[32];
@@ -343,18 +343,14 @@ static void test_bad_files(void **state)
 static void test_the_human_head_has_all(void **state)
 {
     (void)state;
-    static const char *const lacking[] = {"cheek.puff", "cheek.puff.L"};
     for (uint32_t i = 0; i < human->vocabulary.word_count; i++) {
         const ris_word *word = &human->vocabulary.word[i];
         float pose[MAX_CHANNELS] = {0};
         assert_false(ris__model_add_channel(human, word->name, 1, pose));
         for (uint32_t k = 0; k < word->term_count; k++) {
             const char *name = word->term[k].channel;
-            bool known =
+            const bool known =
                 ris__model_add_channel(human, name, 1, pose) || ris__model_add_word(human, name, 1, pose);
-            for (size_t n = 0; n < sizeof lacking / sizeof *lacking; n++) {
-                known = known || strcmp(name, lacking[n]) == 0;
-            }
             if (!known) {
                 fail_msg("%s: %s is no channel of the human head", word->name, name);
             }

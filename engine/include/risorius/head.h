@@ -64,6 +64,8 @@ typedef struct ris_muscle_def {
         release_ms; /* until 90 % of a sudden change of activation is done, up and down; 0 = at once */
     float fat,
         fat_radius_mm; /* KA-47: how much of the fat over it rises when it shortens, and how far beside it */
+    float puff_mm,
+        puff_radius_mm; /* wall of the mouth: what a pressure of cheek.puff 1 bulges its middle by, and how far about */
     bool attach_auto;
     uint32_t attach_count;
     uint32_t *attach; /* skin vertices when attach_auto is false (attach_count) */

@@ -118,6 +118,12 @@ typedef struct ris_fat_node {
     ris_vec3 rise_mm;
 } ris_fat_node;
 
+/* A node of a cheek moves by the pressure within, cheek.puff, times rise_mm, below 0 times sink_mm. */
+typedef struct ris_puff_node {
+    uint32_t node, side; /* 0 = L, 1 = R */
+    ris_vec3 rise_mm, sink_mm;
+} ris_puff_node;
+
 #define RIS_LINING_SOURCES 4
 /* A node of the mouth's lining moves by keep times the sum of its sources' displacements. Sources are nodes
  * of the lips or nodes of the lining that stand before it. */
@@ -173,6 +179,8 @@ typedef struct ris_model {
     float *slide;       /* 0..1: how far muscles move the node along the bone only (node_count) */
     uint32_t fat_count; /* 0 in the kaehler tissue */
     ris_fat_node *fat;
+    uint32_t puff_count; /* 0 in the kaehler tissue */
+    ris_puff_node *puff;
     uint32_t lining_count; /* 0 without lips, mouth_cavity or in the kaehler tissue */
     ris_lining_node *lining;
     /* contact: nothing in the kaehler tissue */
