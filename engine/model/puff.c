@@ -7,10 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define FREE_FROM 0.35f /* of the muscle's length: where the unbacked middle of the wall begins, */
-#define FREE_TO 0.75f   /* and where it ends, before the corner of the mouth */
-#define SUCTION 0.6f    /* of the pressure: the teeth stand close behind, */
-#define SUCKED 0.7f     /* and of its radius: the lips stay where the teeth hold them */
+#define FREE_FROM 0.3f /* of the muscle's length: where the unbacked middle of the wall begins, */
+#define FREE_TO 0.55f  /* and where it ends, before the corner of the mouth */
+#define SUCTION 0.6f   /* of the pressure: the teeth stand close behind, */
+#define SUCKED 0.7f    /* and of its radius: the lips stay where the teeth hold them */
 
 static void find_wall(ris_bake *bake, uint32_t m, const bool *apart)
 {

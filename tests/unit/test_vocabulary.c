@@ -71,9 +71,9 @@ static uint32_t count_moved(const float *pose)
 static void test_every_unit(void **state)
 {
     (void)state;
-    static const int unit[] = {1,  2,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20,
-                               21, 22, 23, 24, 25, 26, 27, 28, 29, 31, 32, 33, 34, 35, 36, 37, 38, 39, 41,
-                               42, 43, 44, 45, 46, 51, 52, 53, 54, 55, 56, 57, 58, 61, 62, 63, 64};
+    static const int unit[] = {1,  2,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13, 14, 15, 16, 17, 18, 19,
+                               20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 31, 32, 33, 34, 35, 37, 38, 39,
+                               41, 42, 43, 44, 45, 46, 51, 52, 53, 54, 55, 56, 57, 58, 61, 62, 63, 64};
     float pose[MAX_CHANNELS];
     for (size_t k = 0; k < sizeof unit / sizeof *unit; k++) {
         char text[32];
@@ -84,6 +84,8 @@ static void test_every_unit(void **state)
         }
     }
     pose_of("AU30.L=1", pose);
+    assert_int_equal(count_moved(pose), 1);
+    pose_of("AU36.L=1", pose);
     assert_int_equal(count_moved(pose), 1);
     assert_true(value_of("AU30.L=1", "jaw.side") == 1 && value_of("AU30.R=1", "jaw.side") == -1);
 }
@@ -268,7 +270,7 @@ static void test_a_head_that_lacks_muscles(void **state)
     const ris_word *none = ris__vocabulary_find(&model.vocabulary, "AU1", &side);
     assert_true(whole->missing_count == 0 && whole->value_count == 2);
     assert_true(part->missing_count == 1 && part->value_count == 1);
-    assert_true(none->missing_count == 1 && none->value_count == 0);
+    assert_true(none->missing_count == 2 && none->value_count == 0);
     assert_int_equal(ris_pose_parse(&model, "AU6+12+27=0.5", pose, &err), RIS_OK);
     assert_true(pose[0] == 0.5f && pose[1] == 0.5f && pose[2] == 0.5f);
     ris__vocabulary_finish(&model.vocabulary);
