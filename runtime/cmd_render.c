@@ -14,7 +14,7 @@
 #define POSE_SECONDS 2.0 /* length of a video or cache of a held pose */
 
 typedef struct render_args {
-    const char *head, *clip, *pose, *at, *size, *fps_text, *view, *contact, *layers;
+    const char *head, *clip, *pose, *at, *size, *fps_text, *view, *contact, *layers, *loops_text;
     cli_list out;
     bool wireframe, labels;
 } render_args;
@@ -23,6 +23,7 @@ typedef struct render_args {
 typedef struct render_job {
     const render_args *args;
     uint32_t width, height, fps; /* size of one view */
+    uint32_t loops;              /* rounds of a clip that repeats */
     double at_s;                 /* < 0: the whole clip */
     studio_views views;
     studio_look look;
@@ -91,6 +92,9 @@ static ris_result check_args(render_job *render, ris_error *err)
         return ris_fail(err, RIS_ERROR_USAGE, "render needs --clip C or --pose P%s",
                         args->clip ? ", not both" : "");
     }
+    if (args->loops_text && !args->clip) {
+        return ris_fail(err, RIS_ERROR_USAGE, "--loops is for a clip");
+    }
     if (args->out.count == 0 && !args->contact) {
         return ris_fail(err, RIS_ERROR_USAGE, "render needs -o OUT.mp4, OUT.png, DIR/%%04d.png or OUT.pc2");
     }
@@ -102,6 +106,9 @@ static ris_result check_args(render_job *render, ris_error *err)
         cli_size("size", args->size ? args->size : "640x720", &render->width, &render->height, err);
     if (!r) {
         r = cli_count("fps", args->fps_text ? args->fps_text : "60", 1, 240, &render->fps, err);
+    }
+    if (!r) {
+        r = cli_count("loops", args->loops_text ? args->loops_text : "1", 1, 10000, &render->loops, err);
     }
     if (!r) {
         r = studio_views_parse(args->view ? args->view : "front", &render->views, err);
@@ -128,6 +135,29 @@ static ris_result check_args(render_job *render, ris_error *err)
     return r;
 }
 
+static double clip_seconds(const render_job *render)
+{
+    return ris_clip_duration_s(render->clip) * render->loops;
+}
+
+static ris_result check_clip(const render_job *render, ris_error *err)
+{
+    double seconds = clip_seconds(render);
+    if (render->args->loops_text && !ris_clip_repeats(render->clip)) {
+        return ris_fail(err, RIS_ERROR_USAGE, "--loops: '%s' does not repeat (\"loop\": true)",
+                        render->args->clip);
+    }
+    if (render->at_s > seconds) {
+        return ris_fail(err, RIS_ERROR_USAGE, "--at: the clip ends at %g s", seconds);
+    }
+    if (seconds * render->fps > 1e6) {
+        return ris_fail(err, RIS_ERROR_USAGE,
+                        "a clip of %g s at %u frames a second is more than a million frames", seconds,
+                        render->fps);
+    }
+    return RIS_OK;
+}
+
 static ris_result open_motion(render_job *render, ris_error *err)
 {
     const render_args *args = render->args;
@@ -138,13 +168,8 @@ static ris_result open_motion(render_job *render, ris_error *err)
     }
     ris_result r = args->clip ? ris_clip_load(model, args->clip, &render->clip, err)
                               : ris_pose_parse(model, args->pose, render->pose, err);
-    if (!r && render->clip && render->at_s > ris_clip_duration_s(render->clip)) {
-        r = ris_fail(err, RIS_ERROR_USAGE, "--at: the clip ends at %g s", ris_clip_duration_s(render->clip));
-    }
-    if (!r && render->clip && ris_clip_duration_s(render->clip) * render->fps > 1e6) {
-        r = ris_fail(err, RIS_ERROR_USAGE,
-                     "a clip of %g s at %u frames a second is more than a million frames",
-                     ris_clip_duration_s(render->clip), render->fps);
+    if (!r && render->clip) {
+        r = check_clip(render, err);
     }
     if (!r) {
         r = player_init(&render->player, render->backend.sim, render->clip, render->pose, err);
@@ -217,7 +242,7 @@ static uint32_t frame_count(const render_job *render)
     if (render->settles || render->at_s >= 0) {
         return 1;
     }
-    double duration_s = render->clip ? ris_clip_duration_s(render->clip) : POSE_SECONDS;
+    double duration_s = render->clip ? clip_seconds(render) : POSE_SECONDS;
     double frames = floor(duration_s * render->fps + 0.5);
     return frames < 1 ? 1 : (uint32_t)frames;
 }
@@ -307,6 +332,7 @@ static ris_result run(ris_cli *cli, int argc, char **argv, ris_error *err)
         {"size", 's', "WxH", "size of one view in pixels (640x720)", NULL, &args.size, NULL},
         {"fps", 0, "N", "frames a second (60); the simulation ticks at 60 whatever it is", NULL,
          &args.fps_text, NULL},
+        {"loops", 0, "N", "rounds of a clip that repeats (1)", NULL, &args.loops_text, NULL},
         {"view", 0, "LIST", "front, 34, profile, 34.R, profile.R; several stand side by side (front)", NULL,
          &args.view, NULL},
         {"layers", 0, "LIST", LAYER_NAMES " (skin)", NULL, &args.layers, NULL},

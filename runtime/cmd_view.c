@@ -229,7 +229,7 @@ static void close_view(view_state *view)
 static ris_result move(view_state *view, double seconds, ris_error *err)
 {
     ris_result r = RIS_OK;
-    if (view->clip && view->time_s >= ris_clip_duration_s(view->clip)) {
+    if (view->clip && !ris_clip_repeats(view->clip) && view->time_s >= ris_clip_duration_s(view->clip)) {
         view->restart = true;
     }
     if (view->step_back) {

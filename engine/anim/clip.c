@@ -1,84 +1,133 @@
-/* KA-50: sampling of clips. A sample depends on the time alone, never on what was sampled before. Cubic: F.
- * N. Fritsch, R. E. Carlson, Monotone piecewise cubic interpolation, SIAM J. Numer. Anal. 17 (1980). */
+/* KA-50: sampling of clips, layer by layer. A sample depends on the time alone, never on what was sampled before. */
 #include "anim/clip.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* What the curve does between key i and i + 1, as far as the cubic beside it cares: a held value has slope 0.
- * */
-static double secant(const ris_track *track, uint32_t i)
+#define BLOCK 256 /* channels sampled at a time: a sample takes no memory but the stack */
+
+typedef struct pose_block {
+    uint32_t first, count; /* channels */
+    float value[BLOCK];
+} pose_block;
+
+/* Time within a clip. What repeats goes on from its start; idle life does not repeat with it, so it is told how long
+ * the clip has been going. */
+typedef struct clip_time {
+    double local_s, going_s;
+} clip_time;
+
+static double wrap(double time_s, double period_s)
 {
-    const ris_key *a = &track->key[i], *b = a + 1;
-    return a->ease == RIS_EASE_STEP ? 0 : (b->value - a->value) / (b->t_s - a->t_s);
+    return time_s - period_s * floor(time_s / period_s);
 }
 
-void ris__track_set_slopes(ris_track *track)
+static double hold(double time_s, double duration_s)
 {
-    /* the ends hold, so the first and last slopes are 0 */
-    track->key[0].slope = track->key[track->key_count - 1].slope = 0;
-    for (uint32_t i = 1; i + 1 < track->key_count; i++) {
-        double before = secant(track, i - 1), after = secant(track, i);
-        track->key[i].slope = before * after > 0 ? (before + after) / 2 : 0;
+    return time_s < 0 ? 0 : time_s > duration_s ? duration_s : time_s;
+}
+
+static void clamp_block(const ris_clip *clip, pose_block *block)
+{
+    for (uint32_t i = 0; i < block->count; i++) {
+        float low = clip->minimum[block->first + i], high = clip->maximum[block->first + i];
+        block->value[i] = block->value[i] < low ? low : block->value[i] > high ? high : block->value[i];
     }
-    for (uint32_t i = 0; i + 1 < track->key_count; i++) {
-        ris_key *a = &track->key[i], *b = a + 1;
-        double d = secant(track, i);
-        if (a->ease != RIS_EASE_CUBIC || d == 0) {
-            continue;
-        }
-        double alpha = a->slope / d, beta = b->slope / d, square = alpha * alpha + beta * beta;
-        if (square > 9) { /* outside the circle of radius 3 the cubic would overshoot */
-            a->slope = 3 / sqrt(square) * alpha * d;
-            b->slope = 3 / sqrt(square) * beta * d;
+}
+
+static void add_tracks(const ris_clip_layer *layer, double time_s, pose_block *block)
+{
+    for (uint32_t i = 0; i < layer->track_count; i++) {
+        const ris_track *track = &layer->track[i];
+        float value = (float)ris__track_value(track, time_s);
+        for (uint32_t n = 0; n < track->term_count; n++) {
+            uint32_t at = track->term[n].channel - block->first;
+            if (at < block->count) {
+                block->value[at] += value * track->term[n].factor;
+            }
         }
     }
 }
 
-double ris__track_value(const ris_track *track, double time_s)
+static void sample_block(const ris_clip *clip, clip_time time, bool repeats, pose_block *block);
+
+/* The layer alone, unweighted. */
+static void sample_layer(const ris_clip_layer *layer, clip_time time, pose_block *block)
 {
-    uint32_t low = 0, high = track->key_count;
-    if (time_s < track->key[0].t_s) {
-        return track->key[0].value;
+    clip_time own = {(time.local_s - layer->start_s) * layer->speed,
+                     (time.going_s - layer->start_s) * layer->speed};
+    for (uint32_t i = 0; i < block->count; i++) {
+        block->value[i] = 0;
     }
-    while (high - low > 1) { /* key[low] is at or before time_s */
-        uint32_t middle = low + (high - low) / 2;
-        if (track->key[middle].t_s <= time_s) {
-            low = middle;
-        } else {
-            high = middle;
+    if (layer->idle) {
+        ris__idle_add(layer->idle, own.going_s, block->first, block->count, block->value);
+        return;
+    }
+    bool repeats = layer->repeats && own.local_s > 0; /* before its start a layer holds its first pose */
+    double local_s = repeats ? wrap(own.local_s, layer->duration_s) : hold(own.local_s, layer->duration_s);
+    if (layer->clip) {
+        sample_block(layer->clip, (clip_time){local_s, own.going_s}, repeats, block);
+    } else {
+        add_tracks(layer, local_s, block);
+    }
+}
+
+static void merge(const ris_clip *clip, const ris_clip_layer *layer, float weight, pose_block *under,
+                  const pose_block *own)
+{
+    if (layer->overrides) {
+        clamp_block(clip, under); /* what is replaced is what would show */
+    }
+    for (uint32_t i = 0; i < under->count; i++) {
+        if (!layer->overrides) {
+            under->value[i] += weight * own->value[i];
+        } else if (layer->touches[under->first + i]) {
+            under->value[i] = under->value[i] * (1 - weight) + own->value[i] * weight;
         }
     }
-    const ris_key *a = &track->key[low], *b = a + 1;
-    if (low + 1 == track->key_count || a->ease == RIS_EASE_STEP) {
-        return a->value;
+}
+
+static double layer_weight(const ris_clip_layer *layer, double time_s)
+{
+    return layer->weight.key_count > 0 ? ris__track_value(&layer->weight, time_s) : 1;
+}
+
+/* The channels of block, clamped. */
+static void sample_block(const ris_clip *clip, clip_time time, bool repeats, pose_block *block)
+{
+    time.local_s = repeats ? wrap(time.local_s, clip->duration_s) : hold(time.local_s, clip->duration_s);
+    for (uint32_t i = 0; i < block->count; i++) {
+        block->value[i] = 0;
     }
-    double span = b->t_s - a->t_s, s = (time_s - a->t_s) / span;
-    if (a->ease == RIS_EASE_LINEAR) {
-        return a->value * (1 - s) + b->value * s;
+    for (uint32_t i = 0; i < clip->layer_count; i++) {
+        const ris_clip_layer *layer = &clip->layer[i];
+        float weight = (float)layer_weight(layer, time.local_s);
+        if (weight != 0) {
+            pose_block own = {.first = block->first, .count = block->count};
+            sample_layer(layer, time, &own);
+            if (layer->overrides) {
+                clamp_block(clip, &own);
+            }
+            merge(clip, layer, weight, block, &own);
+        }
     }
-    double r = 1 - s;
-    return a->value * (1 + 2 * s) * r * r + b->value * s * s * (3 - 2 * s) + a->slope * span * s * r * r -
-           b->slope * span * s * s * r;
+    clamp_block(clip, block);
 }
 
 void ris_clip_sample(const ris_clip *clip, double time_s, float *pose)
 {
-    for (uint32_t c = 0; c < clip->channel_count; c++) {
-        pose[c] = 0;
+    for (uint32_t first = 0; first < clip->channel_count; first += BLOCK) {
+        uint32_t left = clip->channel_count - first;
+        pose_block block = {.first = first, .count = left < BLOCK ? left : BLOCK};
+        sample_block(clip, (clip_time){time_s, time_s}, clip->repeats, &block);
+        memcpy(pose + first, block.value, block.count * sizeof *pose);
     }
-    for (uint32_t i = 0; i < clip->track_count; i++) {
-        const ris_track *track = &clip->track[i];
-        float value = (float)ris__track_value(track, time_s);
-        for (uint32_t n = 0; n < track->term_count; n++) {
-            pose[track->term[n].channel] += value * track->term[n].factor;
-        }
-    }
-    for (uint32_t c = 0; c < clip->channel_count; c++) {
-        pose[c] = pose[c] < clip->minimum[c] ? clip->minimum[c] : pose[c];
-        pose[c] = pose[c] > clip->maximum[c] ? clip->maximum[c] : pose[c];
-    }
+}
+
+bool ris_clip_repeats(const ris_clip *clip)
+{
+    return clip->repeats;
 }
 
 double ris_clip_duration_s(const ris_clip *clip)
@@ -86,31 +135,89 @@ double ris_clip_duration_s(const ris_clip *clip)
     return clip->duration_s;
 }
 
-static int compare_times(const void *left, const void *right)
+/* A moment that may deserve a label; name NULL = after the track that acts most. */
+typedef struct moment {
+    double t_s;
+    const char *name;
+} moment;
+
+static int compare_moments(const void *left, const void *right)
 {
-    double a = *(const double *)left, b = *(const double *)right;
+    double a = ((const moment *)left)->t_s, b = ((const moment *)right)->t_s;
     return a < b ? -1 : a > b;
 }
 
-/* The track that acts most at time_s, or "rest". */
+/* The plain track that acts most at time_s, or "rest". */
 static const char *strongest(const ris_clip *clip, double time_s)
 {
     const char *name = "rest";
     double most = 1e-6;
-    for (uint32_t i = 0; i < clip->track_count; i++) {
-        const ris_track *track = &clip->track[i];
-        double value = fabs(ris__track_value(track, time_s)), share = 0;
-        for (uint32_t n = 0; n < track->term_count; n++) {
-            uint32_t c = track->term[n].channel;
-            double reach = fmax(fabs((double)clip->minimum[c]), fabs((double)clip->maximum[c]));
-            share = fmax(share, reach > 0 ? value * fabs((double)track->term[n].factor) / reach : 0);
-        }
-        if (share > most) {
-            most = share;
-            name = track->target;
+    for (uint32_t k = 0; k < clip->layer_count; k++) {
+        const ris_clip_layer *layer = &clip->layer[k];
+        double weight = fabs(layer_weight(layer, time_s)), own_s = (time_s - layer->start_s) * layer->speed;
+        own_s = layer->repeats && own_s > 0 ? wrap(own_s, layer->duration_s) : own_s;
+        for (uint32_t i = 0; i < layer->track_count; i++) {
+            const ris_track *track = &layer->track[i];
+            double value = weight * fabs(ris__track_value(track, own_s)), share = 0;
+            for (uint32_t n = 0; n < track->term_count; n++) {
+                uint32_t c = track->term[n].channel;
+                double reach = fmax(fabs((double)clip->minimum[c]), fabs((double)clip->maximum[c]));
+                share = fmax(share, reach > 0 ? value * fabs((double)track->term[n].factor) / reach : 0);
+            }
+            if (share > most) {
+                most = share;
+                name = track->target;
+            }
         }
     }
     return name;
+}
+
+static void add_moment(const ris_clip *clip, moment *list, size_t *count, double t_s, const char *name)
+{
+    if (t_s >= 0 && t_s <= clip->duration_s) {
+        list[(*count)++] = (moment){t_s, name};
+    }
+}
+
+/* Keys of tracks and weights, labels of included clips: of a layer that repeats those of the first round. */
+static size_t collect_moments(const ris_clip *clip, moment *list)
+{
+    size_t count = 0;
+    for (uint32_t k = 0; k < clip->layer_count; k++) {
+        const ris_clip_layer *layer = &clip->layer[k];
+        for (uint32_t i = 0; i < layer->weight.key_count; i++) {
+            add_moment(clip, list, &count, layer->weight.key[i].t_s, NULL);
+        }
+        for (uint32_t i = 0; i < layer->track_count; i++) {
+            for (uint32_t n = 0; n < layer->track[i].key_count; n++) {
+                add_moment(clip, list, &count, layer->start_s + layer->track[i].key[n].t_s / layer->speed,
+                           NULL);
+            }
+        }
+        for (uint32_t i = 0; layer->clip && i < layer->clip->label_count; i++) {
+            const ris_label *label = &layer->clip->label[i];
+            add_moment(clip, list, &count, layer->start_s + label->t_s / layer->speed, label->name);
+        }
+    }
+    if (count == 0) {
+        add_moment(clip, list, &count, 0, NULL);
+    }
+    qsort(list, count, sizeof *list, compare_moments);
+    return count;
+}
+
+static size_t moment_room(const ris_clip *clip)
+{
+    size_t room = 1;
+    for (uint32_t k = 0; k < clip->layer_count; k++) {
+        const ris_clip_layer *layer = &clip->layer[k];
+        room += layer->weight.key_count + (layer->clip ? layer->clip->label_count : 0);
+        for (uint32_t i = 0; i < layer->track_count; i++) {
+            room += layer->track[i].key_count;
+        }
+    }
+    return room;
 }
 
 static bool poses_differ(const float *a, const float *b, uint32_t count)
@@ -124,36 +231,28 @@ static bool poses_differ(const float *a, const float *b, uint32_t count)
 
 ris_result ris__clip_make_labels(ris_clip *clip, ris_error *err)
 {
-    size_t key_count = 0, n = 0;
-    for (uint32_t i = 0; i < clip->track_count; i++) {
-        key_count += clip->track[i].key_count;
-    }
-    double *time = malloc(key_count * sizeof *time);
+    size_t room = moment_room(clip);
+    moment *list = malloc(room * sizeof *list);
     float *pose = malloc(2 * (size_t)clip->channel_count * sizeof *pose + 1);
-    clip->label = calloc(key_count, sizeof *clip->label);
-    if (!time || !pose || !clip->label) {
-        free(time);
+    clip->label = calloc(room, sizeof *clip->label);
+    if (!list || !pose || !clip->label) {
+        free(list);
         free(pose);
-        return ris_fail(err, RIS_ERROR_MEMORY, "no memory for %zu labels of a clip", key_count);
+        return ris_fail(err, RIS_ERROR_MEMORY, "no memory for %zu labels of a clip", room);
     }
-    for (uint32_t i = 0; i < clip->track_count; i++) {
-        for (uint32_t k = 0; k < clip->track[i].key_count; k++) {
-            time[n++] = clip->track[i].key[k].t_s;
-        }
-    }
-    qsort(time, n, sizeof *time, compare_times);
+    size_t count = collect_moments(clip, list);
     float *now = pose, *labelled = pose + clip->channel_count;
-    for (size_t i = 0; i < n; i++) {
-        ris_clip_sample(clip, time[i], now);
+    for (size_t i = 0; i < count; i++) {
+        ris_clip_sample(clip, list[i].t_s, now);
         if (clip->label_count > 0 && !poses_differ(now, labelled, clip->channel_count)) {
             continue;
         }
         ris_label *label = &clip->label[clip->label_count++];
-        label->t_s = time[i];
-        strcpy(label->name, strongest(clip, time[i]));
+        label->t_s = list[i].t_s;
+        strcpy(label->name, list[i].name ? list[i].name : strongest(clip, list[i].t_s));
         memcpy(labelled, now, clip->channel_count * sizeof *now);
     }
-    free(time);
+    free(list);
     free(pose);
     return RIS_OK;
 }
@@ -179,11 +278,18 @@ void ris_clip_destroy(ris_clip *clip)
     if (!clip) {
         return;
     }
-    for (uint32_t i = 0; clip->track && i < clip->track_count; i++) {
-        free(clip->track[i].key);
-        free(clip->track[i].term);
+    for (uint32_t k = 0; clip->layer && k < clip->layer_count; k++) {
+        ris_clip_layer *layer = &clip->layer[k];
+        for (uint32_t i = 0; layer->track && i < layer->track_count; i++) {
+            ris__track_finish(&layer->track[i]);
+        }
+        free(layer->track);
+        ris__track_finish(&layer->weight);
+        ris_clip_destroy(layer->clip);
+        ris__idle_destroy(layer->idle);
+        free(layer->touches);
     }
-    free(clip->track);
+    free(clip->layer);
     free(clip->label);
     free(clip->minimum);
     free(clip->maximum);

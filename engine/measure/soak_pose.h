@@ -2,17 +2,8 @@
  * text, so that what is held is to the bit what `--pose` makes of the printed words. */
 #pragma once
 
+#include "base/pcg.h"
 #include "risorius/model.h"
-
-/* PCG32 (O'Neill 2014, XSH-RR 64/32): 64 bits of state, a stream per sequence number. */
-typedef struct ris_pcg {
-    uint64_t state, increment;
-} ris_pcg;
-
-ris_pcg ris__pcg_start(uint64_t seed, uint64_t sequence);
-uint32_t ris__pcg_next(ris_pcg *pcg);
-/* Evenly in [0, limit), limit > 0, by rejection. */
-uint32_t ris__pcg_below(ris_pcg *pcg, uint32_t limit);
 
 typedef enum ris_soak_kind {
     RIS_SOAK_FEW,   /* 1 to 6 channels, none of head.* */

@@ -110,6 +110,9 @@ static void absurd_numbers_are_usage_errors(void **state)
     expect("render " HEAD " --pose jaw.open=1 -o x.png --view top", 2, "top");
     expect("render " HEAD " --pose jaw.open=1 -o x.png --view front,", 2, "--view");
     expect("render " HEAD " --clip " CLIP " -o x.png --at nan", 2, "--at");
+    expect("render " HEAD " --pose jaw.open=1 -o x.mp4 --loops 2", 2, "--loops is for a clip");
+    expect("render " HEAD " --clip " CLIP " -o x.pc2 --loops 0", 2, "--loops");
+    expect("render " HEAD " --clip " CLIP " -o x.pc2 --loops 2", 2, "does not repeat");
     expect("render " HEAD " --clip " CLIP " -o x.png --at -1", 2, "--at");
     expect("render " HEAD " --pose jaw.open=1 -o x.png --layers skin,mucles", 2, "muscles");
     expect("render " HEAD " --pose jaw.open=1 -o x.png --layers skin,", 2, "--layers");

@@ -13,7 +13,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     FUZZ_CHECK((result == RIS_OK) == (clip != NULL));
     if (clip) {
         float pose[FAKE_COUNT];
-        FUZZ_CHECK(clip->duration_s > 0 && clip->track_count > 0);
+        FUZZ_CHECK(clip->duration_s > 0 && clip->layer_count > 0);
         for (int i = -1; i <= 21; i++) {
             ris_clip_sample(clip, clip->duration_s * i / 20, pose);
             for (int c = 0; c < FAKE_COUNT; c++) { /* false for NaN too */

@@ -109,7 +109,7 @@ static void test_cubic_is_smooth(void **state)
     double left = (8 - (double)sample(clip, 1 - h, FAKE_YAW_L)) / h,
            right = ((double)sample(clip, 1 + h, FAKE_YAW_L) - 8) / h;
     assert_true(fabs(left - right) < 0.3);
-    assert_float_equal(clip->track[0].key[1].slope, 7, 1e-12); /* mean of the secants 8 and 6 */
+    assert_float_equal(clip->layer[0].track[0].key[1].slope, 7, 1e-12); /* mean of the secants 8 and 6 */
     left = (8 - (double)sample(clip, 1 - h, FAKE_YAW_R)) / h;
     right = ((double)sample(clip, 1 + h, FAKE_YAW_R) - 8) / h;
     assert_true(fabs(left - right) > 1.9);
@@ -221,7 +221,8 @@ static void test_refuses(void **state)
         {CLIP(TRACK("jaw.open", "{\"t\":-1,\"v\":0}")), "tracks[0].keys[0].t: expected a number of 0 to 4"},
         {CLIP(TRACK("jaw.open", "{\"t\":0,\"v\":\"1\"}")), "tracks[0].keys[0].v: expected a number"},
         {CLIP(TRACK("jaw.open", "{\"t\":0,\"v\":1,\"ease\":\"bounce\"}")),
-         "tracks[0].keys[0].ease: expected one of step, linear, cubic, found \"bounce\""},
+         "tracks[0].keys[0].ease: expected one of step, linear, cubic, in, out, in_out, minimum_jerk, "
+         "back_in, back_out, found \"bounce\""},
         {CLIP(TRACK("jaw.open", "{\"t\":0,\"v\":1,\"w\":1}")), "tracks[0].keys[0].w: unknown key"},
         {START "\"expressions\":{\"a\":{\"jaw.opn\":1}},\"tracks\":[]}",
          "expressions.a.jaw.opn: unknown muscle, channel, unit, shape, viseme or expression; nearest: "
