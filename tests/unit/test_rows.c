@@ -25,11 +25,11 @@ static char *read_text(const char *path)
 
 static bool has_case(const char *program, const char *name)
 {
-    static const char *const folders[] = {"unit", "physics"};
+    static const char *const folders[] = {"unit", "physics", "cli"};
     char path[1024], wanted[256];
     bool found = false;
     snprintf(wanted, sizeof wanted, "cmocka_unit_test(%s)", name);
-    for (int k = 0; k < 2; ++k) {
+    for (int k = 0; k < 3; ++k) {
         snprintf(path, sizeof path, RIS_SOURCE_DIR "/tests/%s/%s.c", folders[k], program);
         char *text = read_text(path);
         found = found || (text && strstr(text, wanted));
