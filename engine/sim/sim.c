@@ -23,8 +23,9 @@ struct ris_sim {
     void *self;
     char backend[256];
     ris_rig rig;
-    bool at_once;      /* the pose is held: only its equilibrium counts, and no onset */
-    ris_vec4 *scratch; /* (node_count) */
+    bool at_once;       /* the pose is held: only its equilibrium counts, and no onset */
+    bool without_onset; /* ris_sim_set_onset */
+    ris_vec4 *scratch;  /* (node_count) */
     ris_sim_times times;
 };
 
@@ -134,7 +135,7 @@ ris_result ris_sim_reset(ris_sim *sim, ris_error *err)
 static void run_muscle_stages(ris_sim *sim, const float *asked)
 {
     const float *pose = sim->rig.pose;
-    ris__activation(&sim->rig, asked, sim->at_once);
+    ris__activation(&sim->rig, asked, sim->at_once || sim->without_onset);
     ris__jaw_pose(&sim->rig, pose);
     ris__muscle_contract(&sim->rig, pose);
     ris__muscle_constrain(&sim->rig);
@@ -249,6 +250,11 @@ static ris_result find_fastest(ris_sim *sim, ris_vec4 *before, ris_hold *out, ri
         }
     }
     return result;
+}
+
+void ris_sim_set_onset(ris_sim *sim, bool on)
+{
+    sim->without_onset = !on;
 }
 
 ris_result ris_sim_hold(ris_sim *sim, const float *pose, double limit_s, ris_hold *out, ris_error *err)

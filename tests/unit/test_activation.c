@@ -165,6 +165,30 @@ static void everything_in_its_own_time(void **state)
     close_fixture(&f);
 }
 
+/* What is held, and what a recorded performance plays, is there with the first tick. */
+static void a_recorded_pose_is_there_at_once(void **state)
+{
+    (void)state;
+    fixture f = open_fixture(RIS_TISSUE_RISORIUS);
+    ris_sim *sim = NULL;
+    ris_hold hold;
+    need(ris_sim_create_cpu(f.model, &sim, &err));
+    f.pose[0] = 0.75f;
+    need(ris_sim_tick(sim, f.pose, &err));
+    assert_true(ris_sim_activation(sim, 0) > 0.1f && ris_sim_activation(sim, 0) < 0.5f);
+    ris_sim_set_onset(sim, false);
+    need(ris_sim_tick(sim, f.pose, &err));
+    assert_true(ris_sim_activation(sim, 0) == 0.75f);
+    ris_sim_set_onset(sim, true);
+    f.pose[0] = 0.0f;
+    need(ris_sim_tick(sim, f.pose, &err));
+    assert_true(ris_sim_activation(sim, 0) > 0.4f);
+    need(ris_sim_hold(sim, f.pose, RIS_TICK_S, &hold, &err));
+    assert_true(ris_sim_activation(sim, 0) == 0.0f);
+    ris_sim_destroy(sim);
+    close_fixture(&f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -173,6 +197,7 @@ int main(void)
         cmocka_unit_test(no_time_is_at_once),
         cmocka_unit_test(it_arrives_and_never_overshoots),
         cmocka_unit_test(everything_in_its_own_time),
+        cmocka_unit_test(a_recorded_pose_is_there_at_once),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

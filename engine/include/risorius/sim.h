@@ -61,6 +61,9 @@ ris_result ris_sim_reset(ris_sim *sim, ris_error *err);
  * follow in their own time (ris_dynamics_def). RIS_ERROR_DIVERGED names
  * stage and vertex. */
 ris_result ris_sim_tick(ris_sim *sim, const float *pose, ris_error *err);
+/* Whether muscles take their time, as they do unless told, or are at every pose at once: a recorded performance already holds
+ * the actor's own onset. What the skin feels of the head stays. */
+void ris_sim_set_onset(ris_sim *sim, bool on);
 /* Ticks until no node is faster than 0.1 mm/s for 0.25 s; after 20 s RIS_ERROR_FAILED naming the vertex.
  * out_time_s may be NULL. */
 ris_result ris_sim_settle(ris_sim *sim, const float *pose, double *out_time_s, ris_error *err);
