@@ -1,6 +1,7 @@
 /* risorius bench [HEAD]: what a simulated sixtieth of a second costs, stage by stage. The result is checked first. */
 #include "backend.h"
 #include "base/clock.h"
+#include "motion.h"
 #include "player.h"
 #include "scenes/scenes.h"
 
@@ -19,7 +20,8 @@
 #define COLUMNS (RIS_STAGE_COUNT + 4)
 
 typedef struct bench_args {
-    const char *head, *clip, *repeat_text;
+    const char *head, *repeat_text;
+    motion_words motion;
     uint32_t repeats;
     bool csv;
 } bench_args;
@@ -244,19 +246,21 @@ static void find_clip(const char *head, char *out, size_t size)
 }
 
 /* The clip given, else clips/first_light.json beside the head, else none. */
-static ris_result open_clip(bench_run *bench, const bench_args *args, ris_error *err)
+static ris_result open_clip(bench_run *bench, const ris_cli *cli, const bench_args *args, ris_error *err)
 {
+    const char *file = motion_file(&args->motion);
+    ris_result r = RIS_OK;
     bench->ticks = 330;
-    if (args->clip) {
-        snprintf(bench->clip_path, sizeof bench->clip_path, "%s", args->clip);
+    if (file) {
+        snprintf(bench->clip_path, sizeof bench->clip_path, "%s", file);
+        r = motion_load(&args->motion, cli, bench->backend.model, &bench->clip, err);
     } else {
         find_clip(args->head, bench->clip_path, sizeof bench->clip_path);
+        if (bench->clip_path[0] != '\0') {
+            r = ris_clip_load(bench->backend.model, bench->clip_path, &bench->clip, err);
+        }
     }
-    if (bench->clip_path[0] == '\0') {
-        return RIS_OK;
-    }
-    ris_result r = ris_clip_load(bench->backend.model, bench->clip_path, &bench->clip, err);
-    if (!r) {
+    if (!r && bench->clip) {
         bench->ticks = (uint32_t)player_tick_at(ris_clip_duration_s(bench->clip));
     }
     return r;
@@ -268,7 +272,7 @@ static ris_result open_bench(bench_run *bench, const ris_cli *cli, const bench_a
     ris_result r = args->head ? backend_load(&bench->backend, args->head, err)
                               : ris_scene_model(&scene, &bench->backend.model, err);
     if (!r) {
-        r = open_clip(bench, args, err);
+        r = open_clip(bench, cli, args, err);
     }
     if (!r && bench->backend.model->node_count < SMALL_NODES) {
         setenv("LP_NUM_THREADS", "0", 0);
@@ -282,6 +286,10 @@ static ris_result open_bench(bench_run *bench, const ris_cli *cli, const bench_a
     }
     if (!r) {
         r = ris_sim_create_cpu(bench->backend.model, &bench->reference, err);
+    }
+    if (!r) {
+        motion_start(&args->motion, bench->backend.sim);
+        motion_start(&args->motion, bench->reference);
     }
     bench->sample_capacity = r ? 0 : bench->ticks * args->repeats;
     for (uint32_t c = 0; !r && c < COLUMNS; c++) {
@@ -324,9 +332,7 @@ static ris_result run(ris_cli *cli, int argc, char **argv, ris_error *err)
 {
     bench_args args = {.repeats = 5};
     const cli_option options[] = {
-        {"clip", 'c', "CLIP",
-         "the clip to run (HEAD/../clips/first_light.json, or an excitation of all muscles)", NULL,
-         &args.clip, NULL},
+        MOTION_OPTIONS(&args.motion),
         {"repeat", 'n', "N", "measured repeats after one to warm up (5)", NULL, &args.repeat_text, NULL},
         {"csv", 0, NULL, "print the times as CSV", &args.csv, NULL, NULL},
         {0},
@@ -339,7 +345,10 @@ static ris_result run(ris_cli *cli, int argc, char **argv, ris_error *err)
     if (args.repeat_text) {
         r = cli_count("repeat", args.repeat_text, 1, 1000, &args.repeats, err);
     }
-    if (!r && args.clip && !args.head) {
+    if (!r) {
+        r = motion_check(&args.motion, err);
+    }
+    if (!r && motion_file(&args.motion) && !args.head) {
         r = ris_fail(err, RIS_ERROR_USAGE, "bench --clip needs a head");
     }
     if (r) {
@@ -362,6 +371,7 @@ const cli_command cmd_bench = {
     .usage = "[HEAD] [--clip C] [--repeat N] [--csv]",
     .summary = "measure the cost of a frame, stage by stage, after checking the result",
     .detail =
+        "Without a motion it runs HEAD/../clips/first_light.json, or an excitation of all muscles.\n"
         "Rows: muscle (host stages), upload, the device stages by GPU timestamps (all substeps of a frame), "
         "wait\n"
         "(record, submit and fence wait; contains the device stages), frame (everything, by the clock).\n",

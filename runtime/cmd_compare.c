@@ -1,12 +1,14 @@
 /* risorius compare HEAD --clip C: the same clip on a Vulkan device and on the CPU reference, stage by stage. */
 #include "sim/compare.h"
 #include "backend.h"
+#include "motion.h"
 #include "player.h"
 
 #include <string.h>
 
 typedef struct compare_args {
-    const char *head, *clip, *tolerance_text;
+    const char *head, *tolerance_text;
+    motion_words motion;
     double tolerance_mm; /* < 0: the default of the device */
 } compare_args;
 
@@ -104,10 +106,12 @@ static ris_result compare(const ris_cli *cli, const compare_args *args, ris_back
                           ris_sim *reference, ris_error *err)
 {
     ris_clip *clip = NULL;
-    ris_result r = ris_clip_load(backend->model, args->clip, &clip, err);
+    ris_result r = motion_load(&args->motion, cli, backend->model, &clip, err);
     if (r) {
         return r;
     }
+    motion_start(&args->motion, reference);
+    motion_start(&args->motion, backend->sim);
     compare_run user = {.clip = clip};
     ris_compare_report report = {0};
     ris_compare_def def = ris_default_compare_def(reference, backend->sim);
@@ -131,8 +135,12 @@ static ris_result compare(const ris_cli *cli, const compare_args *args, ris_back
 static ris_result check_args(const ris_cli *cli, compare_args *args, ris_error *err)
 {
     args->tolerance_mm = -1;
-    if (!args->clip) {
-        return ris_fail(err, RIS_ERROR_USAGE, "compare needs --clip C");
+    ris_result r = motion_check(&args->motion, err);
+    if (r) {
+        return r;
+    }
+    if (!motion_file(&args->motion)) {
+        return ris_fail(err, RIS_ERROR_USAGE, "compare needs --clip C, --live-link T or --openface T");
     }
     if (backend_is_cpu(cli)) {
         return ris_fail(err, RIS_ERROR_USAGE,
@@ -148,7 +156,7 @@ static ris_result run(ris_cli *cli, int argc, char **argv, ris_error *err)
 {
     compare_args args = {0};
     const cli_option options[] = {
-        {"clip", 'c', "CLIP", "the clip to run on both sides", NULL, &args.clip, NULL},
+        MOTION_OPTIONS(&args.motion),
         {"tolerance", 0, "MM",
          "allowed difference; without it 0 bits on lavapipe, else 1e-4 mm a step and 1e-2 mm over the clip",
          NULL, &args.tolerance_text, NULL},
@@ -182,7 +190,7 @@ static ris_result run(ris_cli *cli, int argc, char **argv, ris_error *err)
 
 const cli_command cmd_compare = {
     .name = "compare",
-    .usage = "HEAD --clip C [--tolerance MM]",
+    .usage = "HEAD (--clip C | --live-link T | --openface T) [--tolerance MM]",
     .summary = "run a clip on a Vulkan device and on the CPU reference and compare every stage",
     .detail =
         "Exit code 1 names the stage, frame, substep and vertex over tolerance. Words are 32-bit numbers "

@@ -1,17 +1,20 @@
 /* risorius export HEAD: the skin of a held pose, or of a moment of a clip, as OBJ in the order of skin.obj. */
 #include "backend.h"
+#include "motion.h"
 #include "player.h"
 #include "risorius/output.h"
 
 #include <stdlib.h>
 
 typedef struct export_args {
-    const char *head, *pose, *clip, *at, *out;
+    const char *head, *pose, *at, *out;
+    motion_words motion;
     bool parts;
 } export_args;
 
 /* Brings the simulation to the state that is asked for. */
-static ris_result reach(const ris_backend *backend, const export_args *args, ris_error *err)
+static ris_result reach(const ris_backend *backend, const ris_cli *cli, const export_args *args,
+                        ris_error *err)
 {
     const ris_model *model = backend->model;
     ris_clip *clip = NULL;
@@ -19,12 +22,13 @@ static ris_result reach(const ris_backend *backend, const export_args *args, ris
     double time_s = 0;
     float *pose = calloc(model->channel_count + 1u, sizeof *pose);
     ris_result r = pose ? RIS_OK : ris_fail(err, RIS_ERROR_MEMORY, "out of memory for a pose");
-    if (!r && args->clip) {
-        r = ris_clip_load(model, args->clip, &clip, err);
+    if (!r && motion_file(&args->motion)) {
+        r = motion_load(&args->motion, cli, model, &clip, err);
         if (!r) {
             r = cli_number("at", args->at, 0, ris_clip_duration_s(clip), &time_s, err);
         }
         if (!r) {
+            motion_start(&args->motion, backend->sim);
             r = player_init(&player, backend->sim, clip, NULL, err);
         }
         while (!r && player.tick < player_tick_at(time_s)) {
@@ -91,13 +95,13 @@ static ris_result check_args(const export_args *args, ris_error *err)
     if (!args->out) {
         return ris_fail(err, RIS_ERROR_USAGE, "export needs -o FILE.obj");
     }
-    if (args->pose && args->clip) {
-        return ris_fail(err, RIS_ERROR_USAGE, "export takes --pose or --clip, not both");
+    if (args->pose && motion_file(&args->motion)) {
+        return ris_fail(err, RIS_ERROR_USAGE, "export takes --pose or a motion, not both");
     }
-    if (!args->clip != !args->at) {
+    if (!motion_file(&args->motion) != !args->at) {
         return ris_fail(err, RIS_ERROR_USAGE, "export --clip C and --at T belong together");
     }
-    return RIS_OK;
+    return motion_check(&args->motion, err);
 }
 
 static ris_result run(ris_cli *cli, int argc, char **argv, ris_error *err)
@@ -106,8 +110,8 @@ static ris_result run(ris_cli *cli, int argc, char **argv, ris_error *err)
     const cli_option options[] = {
         {"pose", 'p', "POSE", "name=value[,name=value...]; without it the neutral head at rest", NULL,
          &args.pose, NULL},
-        {"clip", 'c', "CLIP", "a clip, stopped at --at", NULL, &args.clip, NULL},
-        {"at", 't', "SECONDS", "the moment of the clip", NULL, &args.at, NULL},
+        MOTION_OPTIONS(&args.motion),
+        {"at", 't', "SECONDS", "the moment of the motion", NULL, &args.at, NULL},
         {"output", 'o', "FILE.obj", "the file to write", NULL, &args.out, NULL},
         {"parts", 0, NULL, "eyes, teeth, tongue and the rest too", &args.parts, NULL, NULL},
         {0},
@@ -127,7 +131,7 @@ static ris_result run(ris_cli *cli, int argc, char **argv, ris_error *err)
     ris_backend backend;
     r = backend_open(&backend, cli, args.head, &(backend_need){.sim = true}, err);
     if (!r) {
-        r = reach(&backend, &args, err);
+        r = reach(&backend, cli, &args, err);
     }
     if (!r) {
         r = write_obj(&backend, &args, err);

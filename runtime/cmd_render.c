@@ -1,6 +1,7 @@
 /* risorius render HEAD: plays a clip or holds a pose and writes a video, pictures, a vertex cache or a contact sheet. */
 #include "base/clock.h"
 #include "layers.h"
+#include "motion.h"
 #include "player.h"
 #include "render_out.h"
 #include "sheet.h"
@@ -14,9 +15,10 @@
 #define POSE_SECONDS 2.0 /* length of a video or cache of a held pose */
 
 typedef struct render_args {
-    const char *head, *clip, *pose, *at, *size, *fps_text, *view, *contact, *layers, *loops_text;
+    const char *head, *pose, *at, *size, *fps_text, *view, *contact, *layers, *loops_text;
+    motion_words motion;
     cli_list out;
-    bool wireframe, labels;
+    bool wireframe, labels, no_raster;
 } render_args;
 
 /* All a rendering needs; zeroed, then filled by open_render, freed by close_render in any state. */
@@ -36,6 +38,7 @@ typedef struct render_job {
     ris_player player;
     ris_studio *studio;
     ris_sheet sheet;
+    uint64_t sim_ns, raster_ns, output_ns; /* spent on ticks, pictures, files */
 } render_job;
 
 /* Two outputs of one name would write over each other. */
@@ -67,12 +70,15 @@ static ris_result check_outputs(render_job *render, ris_error *err)
         return r;
     }
     bool still = args->out.count > 0 && !moving;
-    if (args->clip && still && !args->at) {
+    if (motion_file(&args->motion) && still && !args->at) {
         return ris_fail(err, RIS_ERROR_USAGE,
                         "one picture of a clip needs --at SECONDS (or -o DIR/%%04d.png for all)");
     }
-    if (args->at && (!args->clip || !still)) {
+    if (args->at && (!motion_file(&args->motion) || !still)) {
         return ris_fail(err, RIS_ERROR_USAGE, "--at is for one picture (-o FILE.png) of a clip");
+    }
+    if (args->no_raster && render->draws) {
+        return ris_fail(err, RIS_ERROR_USAGE, "--no-raster makes no picture: -o OUT.pc2 or nothing");
     }
     for (uint32_t i = 0; moving && i < args->out.count; i++) {
         if (render->out[i].kind == RENDER_PNG) {
@@ -88,22 +94,29 @@ static ris_result check_outputs(render_job *render, ris_error *err)
 static ris_result check_args(render_job *render, ris_error *err)
 {
     const render_args *args = render->args;
-    if (!args->clip == !args->pose) {
-        return ris_fail(err, RIS_ERROR_USAGE, "render needs --clip C or --pose P%s",
-                        args->clip ? ", not both" : "");
+    if (!motion_file(&args->motion) == !args->pose) {
+        return ris_fail(err, RIS_ERROR_USAGE, "render needs --clip C, a performance or --pose P%s",
+                        motion_file(&args->motion) ? ", not both" : "");
     }
-    if (args->loops_text && !args->clip) {
+    if (args->loops_text && !motion_file(&args->motion)) {
         return ris_fail(err, RIS_ERROR_USAGE, "--loops is for a clip");
     }
-    if (args->out.count == 0 && !args->contact) {
-        return ris_fail(err, RIS_ERROR_USAGE, "render needs -o OUT.mp4, OUT.png, DIR/%%04d.png or OUT.pc2");
+    ris_result r = motion_check(&args->motion, err);
+    if (r) {
+        return r;
     }
-    if (args->contact && (!args->clip || args->at)) {
+    if (args->out.count == 0 && !args->contact && !args->no_raster) {
+        return ris_fail(err, RIS_ERROR_USAGE,
+                        "render needs -o OUT.mp4, OUT.png, DIR/%%04d.png or OUT.pc2, or --no-raster");
+    }
+    if (args->no_raster && (args->contact || args->pose)) {
+        return ris_fail(err, RIS_ERROR_USAGE, "--no-raster plays a motion and makes no picture");
+    }
+    if (args->contact && (!motion_file(&args->motion) || args->at)) {
         return ris_fail(err, RIS_ERROR_USAGE,
                         "--contact shows the key poses of a whole clip: it needs --clip, without --at");
     }
-    ris_result r =
-        cli_size("size", args->size ? args->size : "640x720", &render->width, &render->height, err);
+    r = cli_size("size", args->size ? args->size : "640x720", &render->width, &render->height, err);
     if (!r) {
         r = cli_count("fps", args->fps_text ? args->fps_text : "60", 1, 240, &render->fps, err);
     }
@@ -145,7 +158,7 @@ static ris_result check_clip(const render_job *render, ris_error *err)
     double seconds = clip_seconds(render);
     if (render->args->loops_text && !ris_clip_repeats(render->clip)) {
         return ris_fail(err, RIS_ERROR_USAGE, "--loops: '%s' does not repeat (\"loop\": true)",
-                        render->args->clip);
+                        motion_file(&render->args->motion));
     }
     if (render->at_s > seconds) {
         return ris_fail(err, RIS_ERROR_USAGE, "--at: the clip ends at %g s", seconds);
@@ -158,7 +171,7 @@ static ris_result check_clip(const render_job *render, ris_error *err)
     return RIS_OK;
 }
 
-static ris_result open_motion(render_job *render, ris_error *err)
+static ris_result open_motion(render_job *render, const ris_cli *cli, ris_error *err)
 {
     const render_args *args = render->args;
     const ris_model *model = render->backend.model;
@@ -166,12 +179,13 @@ static ris_result open_motion(render_job *render, ris_error *err)
     if (!render->pose) {
         return ris_fail(err, RIS_ERROR_MEMORY, "out of memory for a pose");
     }
-    ris_result r = args->clip ? ris_clip_load(model, args->clip, &render->clip, err)
-                              : ris_pose_parse(model, args->pose, render->pose, err);
+    ris_result r = motion_file(&args->motion) ? motion_load(&args->motion, cli, model, &render->clip, err)
+                                              : ris_pose_parse(model, args->pose, render->pose, err);
     if (!r && render->clip) {
         r = check_clip(render, err);
     }
     if (!r) {
+        motion_start(&args->motion, render->backend.sim);
         r = player_init(&render->player, render->backend.sim, render->clip, render->pose, err);
     }
     return r;
@@ -184,7 +198,7 @@ static ris_result open_render(render_job *render, const ris_cli *cli, ris_error 
     ris_result r =
         backend_open(&render->backend, cli, args->head, &(backend_need){.sim = true, .draw = draws}, err);
     if (!r) {
-        r = open_motion(render, err);
+        r = open_motion(render, cli, err);
     }
     if (!r && !cli->quiet && !cli->json) {
         fprintf(stderr, "device: %s\n", ris_sim_backend(render->backend.sim));
@@ -216,24 +230,37 @@ static void close_render(render_job *render)
     backend_close(&render->backend);
 }
 
+/* Adds the time since *start to sum and starts anew. */
+static void count_time(uint64_t *start, uint64_t *sum)
+{
+    const uint64_t now = ris__clock_ns();
+    *sum += now - *start;
+    *start = now;
+}
+
 /* Looks at time_s and gives the frame to every output. */
 static ris_result put_frame(render_job *render, double time_s, ris_error *err)
 {
     const ris_vec4 *position = NULL, *normal = NULL;
     const uint8_t *rgba = NULL;
+    const bool looks = render->args->out.count > 0;
     ris_result r = RIS_OK;
+    uint64_t start = ris__clock_ns();
     if (!render->settles) {
         r = player_advance(&render->player, time_s, err);
-        if (!r) {
+        if (!r && looks) {
             r = player_look(&render->player, time_s, &position, &normal, err);
         }
     }
+    count_time(&start, &render->sim_ns);
     if (!r && render->studio) {
         r = studio_shoot(render->studio, render->backend.sim, position, normal, &rgba, err);
     }
+    count_time(&start, &render->raster_ns);
     for (uint32_t i = 0; !r && i < render->args->out.count; i++) {
         r = render_out_frame(&render->out[i], rgba, position, err);
     }
+    count_time(&start, &render->output_ns);
     return r;
 }
 
@@ -262,7 +289,7 @@ static ris_result run_frames(render_job *render, const ris_cli *cli, uint32_t *o
         if (render->args->contact) {
             r = sheet_take(&render->sheet, &render->player, time_s, err);
         }
-        if (!r && render->args->out.count > 0) {
+        if (!r && (render->args->out.count > 0 || render->args->no_raster)) {
             r = put_frame(render, time_s, err);
         }
         if (!r) {
@@ -292,6 +319,29 @@ static ris_result finish_outputs(render_job *render, ris_error *err)
     return r;
 }
 
+/* Simulated seconds a second, without pictures and with them; nothing for a pose. */
+static void report_speed(const render_job *render, bool json)
+{
+    const double played_s = (double)render->player.tick * RIS_TICK_S, sim_s = (double)render->sim_ns * 1e-9;
+    const double raster_s = (double)render->raster_ns * 1e-9, output_s = (double)render->output_ns * 1e-9;
+    const double factor = sim_s > 0 ? played_s / sim_s : 0;
+    const double all = sim_s > 0 ? played_s / (sim_s + raster_s + output_s) : 0;
+    if (render->settles || render->player.tick == 0) {
+        return;
+    }
+    if (json) {
+        printf(", \"simulated_s\": %.3f, \"simulation_s\": %.3f, \"raster_s\": %.3f, \"output_s\": %.3f, "
+               "\"real_time_factor\": %.3f, \"real_time_factor_with_output\": %.3f",
+               played_s, sim_s, raster_s, output_s, factor, all);
+        return;
+    }
+    fprintf(stderr, "%.2f s simulated in %.2f s: %.2f times real time", played_s, sim_s, factor);
+    if (render->args->out.count > 0) {
+        fprintf(stderr, "; with pictures (%.2f s) and files (%.2f s) %.2f times", raster_s, output_s, all);
+    }
+    fprintf(stderr, "\n");
+}
+
 static void report(const render_job *render, const ris_cli *cli, uint32_t frames, double seconds)
 {
     const cli_list *out = &render->args->out;
@@ -307,7 +357,9 @@ static void report(const render_job *render, const ris_cli *cli, uint32_t frames
             printf("%s", out->count ? ", " : "");
             cli_json_string(stdout, render->args->contact);
         }
-        printf("]}\n");
+        printf("]");
+        report_speed(render, true);
+        printf("}\n");
     } else if (!cli->quiet) {
         for (uint32_t i = 0; i < out->count; i++) {
             fprintf(stderr, "wrote %s (%u frame%s)\n", out->item[i], frames, frames == 1 ? "" : "s");
@@ -315,6 +367,7 @@ static void report(const render_job *render, const ris_cli *cli, uint32_t frames
         if (render->args->contact) {
             fprintf(stderr, "wrote %s (%u key poses)\n", render->args->contact, render->sheet.pose_count);
         }
+        report_speed(render, false);
         fprintf(stderr, "%.1f s\n", seconds);
     }
 }
@@ -323,12 +376,13 @@ static ris_result run(ris_cli *cli, int argc, char **argv, ris_error *err)
 {
     render_args args = {0};
     const cli_option options[] = {
-        {"clip", 'c', "CLIP", "the clip to play", NULL, &args.clip, NULL},
+        MOTION_OPTIONS(&args.motion),
         {"pose", 'p', "POSE", "the pose to hold: name=value[,name=value...]", NULL, &args.pose, NULL},
         {"output", 'o', "FILE", "OUT.mp4, OUT.png, DIR/%04d.png or OUT.pc2; may be repeated", NULL, NULL,
          &args.out},
         {"contact", 0, "FILE.png", "a labelled sheet of the clip's key poses", NULL, &args.contact, NULL},
         {"at", 't', "SECONDS", "the moment of one picture of a clip", NULL, &args.at, NULL},
+        {"no-raster", 0, NULL, "play without pictures and tell the speed", &args.no_raster, NULL, NULL},
         {"size", 's', "WxH", "size of one view in pixels (640x720)", NULL, &args.size, NULL},
         {"fps", 0, "N", "frames a second (60); the simulation ticks at 60 whatever it is", NULL,
          &args.fps_text, NULL},
@@ -370,7 +424,8 @@ static ris_result run(ris_cli *cli, int argc, char **argv, ris_error *err)
 
 const cli_command cmd_render = {
     .name = "render",
-    .usage = "HEAD (--clip C | --pose P) -o OUT.mp4|OUT.png|DIR/%04d.png|OUT.pc2",
+    .usage =
+        "HEAD (--clip C | --live-link T | --openface T | --pose P) -o OUT.mp4|OUT.png|DIR/%04d.png|OUT.pc2",
     .summary = "play a clip or hold a pose into a video, pictures, a vertex cache or a contact sheet",
     .detail = "A held pose gives one picture at rest, or two seconds of motion into it as video or cache.\n"
               "With --device cpu the simulation runs on the CPU; pictures still need a Vulkan device.\n",

@@ -4,9 +4,32 @@
 
 #include <stdlib.h>
 
+#define EVENT_TICKS 20
+
+/* Frames near each other show one event, of which the worst is kept. False if a worse one is there. */
+static bool replace_neighbour(const soak *run, soak_row *row, const ris_finding *finding, ris_soak_id id)
+{
+    const uint32_t near = EVENT_TICKS / run->args.every;
+    for (uint32_t k = 0; k < row->worst_count; k++) {
+        if (row->worst[k].id.number + near >= id.number) {
+            if (row->worst[k].finding.value >= finding->value) {
+                return false;
+            }
+            --row->worst_count;
+            for (uint32_t n = k--; n < row->worst_count; n++) {
+                row->worst[n] = row->worst[n + 1];
+            }
+        }
+    }
+    return true;
+}
+
 static void keep(const soak *run, soak_row *row, const ris_finding *finding, ris_soak_id id)
 {
     const uint32_t room = run->args.worst ? run->args.worst : 1;
+    if (run->clip && !replace_neighbour(run, row, finding, id)) {
+        return;
+    }
     uint32_t at = row->worst_count;
     while (at > 0 && row->worst[at - 1].finding.value < finding->value) {
         --at;
@@ -21,7 +44,7 @@ static void keep(const soak *run, soak_row *row, const ris_finding *finding, ris
     row->worst[at] = (soak_record){*finding, id};
 }
 
-static void record(soak *run, uint32_t which, const ris_finding *finding, ris_soak_id id)
+void soak_record_finding(soak *run, uint32_t which, const ris_finding *finding, ris_soak_id id)
 {
     soak_row *row = &run->row[which];
     ++row->pose_count;
@@ -56,7 +79,7 @@ static ris_result measure_mirror(soak *run, ris_soak_id id, ris_error *err)
     ris_result r = hold(run, run->mirrored_pose, run->mirrored, &held, err);
     if (!r) {
         const ris_finding found = ris__measure_mirror(run->measurer, run->position, run->mirrored);
-        record(run, RIS_MEASURE_MIRROR, &found, id);
+        soak_record_finding(run, RIS_MEASURE_MIRROR, &found, id);
     }
     return r;
 }
@@ -83,7 +106,7 @@ static ris_result measure_one(soak *run, ris_soak_id id, ris_error *err)
     }
     for (uint32_t m = 0; !r && m < RIS_MEASURE_MIRROR; m++) {
         if (run->row[m].measured) {
-            record(run, m, &found[m], id);
+            soak_record_finding(run, m, &found[m], id);
         }
     }
     if (!r) {
@@ -91,7 +114,7 @@ static ris_result measure_one(soak *run, ris_soak_id id, ris_error *err)
                                    .vertex_count = 1,
                                    .vertex = {held.vertex},
                                    .part = ""};
-        record(run, SOAK_SPEED, &speed, id);
+        soak_record_finding(run, SOAK_SPEED, &speed, id);
     }
     const bool wild = !r && found[RIS_MEASURE_FINITE].value > 0;
     if (!r && !wild && run->row[RIS_MEASURE_MIRROR].measured && run->done % run->args.mirror_every == 0) {
@@ -191,12 +214,12 @@ static ris_result open_soak(soak *run, const ris_cli *cli, ris_error *err)
     run->kind_count[RIS_SOAK_FEW] = run->args.poses;
     run->kind_count[RIS_SOAK_ALL] = run->args.poses / 10;
     run->kind_count[RIS_SOAK_SINGLE] = run->args.no_single ? 0 : ris__soak_single_count(model);
-    if (run->args.pose) {
+    if (run->args.pose || motion_file(&run->args.motion)) {
         run->kind_count[RIS_SOAK_FEW] = 1;
         run->kind_count[RIS_SOAK_ALL] = run->kind_count[RIS_SOAK_SINGLE] = 0;
     }
     run->total = run->kind_count[0] + run->kind_count[1] + run->kind_count[2];
-    return RIS_OK;
+    return motion_file(&run->args.motion) ? soak_motion_open(run, cli, err) : RIS_OK;
 }
 
 static void close_soak(soak *run)
@@ -210,13 +233,14 @@ static void close_soak(soak *run)
     free(run->mirrored);
     free(run->trace.flipped);
     free(run->trace.worst);
+    soak_motion_close(run);
     ris__measurer_destroy(run->measurer);
     backend_close(&run->backend);
 }
 
 typedef struct soak_words {
     const char *poses, *seed, *mirror_every, *worst, *hold, *vertex, *midpoint, *lips, *flipped, *mirror,
-        *speed;
+        *speed, *every;
 } soak_words;
 
 static ris_result read_words(const soak_words *words, soak_args *args, ris_error *err)
@@ -227,7 +251,8 @@ static ris_result read_words(const soak_words *words, soak_args *args, ris_error
     } count[] = {{"poses", words->poses, 0, 10000000, &args->poses},
                  {"seed", words->seed, 0, UINT32_MAX, &args->seed},
                  {"mirror-every", words->mirror_every, 0, 1000000, &args->mirror_every},
-                 {"worst", words->worst, 0, SOAK_WORST_MAX, &args->worst}};
+                 {"worst", words->worst, 0, SOAK_WORST_MAX, &args->worst},
+                 {"every", words->every, 1, 10000, &args->every}};
     const struct {
         const char *name, *text;
         double high, *out;
@@ -258,6 +283,7 @@ static ris_result parse(ris_cli *cli, int argc, char **argv, soak_args *args, ri
     *args = (soak_args){.poses = 200,
                         .seed = 1,
                         .mirror_every = 10,
+                        .every = 1,
                         .hold_s = 5,
                         .vertex_mm = 0.5,
                         .midpoint_mm = 1,
@@ -270,6 +296,8 @@ static ris_result parse(ris_cli *cli, int argc, char **argv, soak_args *args, ri
          &w.poses, NULL},
         {"seed", 's', "S", "which random poses (1)", NULL, &w.seed, NULL},
         {"pose", 'p', "POSE", "measure this pose alone: name=value[,name=value...]", NULL, &args->pose, NULL},
+        MOTION_OPTIONS(&args->motion),
+        {"every", 0, "N", "of a motion, measure every N-th sixtieth of a second (1)", NULL, &w.every, NULL},
         {"no-single", 0, NULL, "leave out every channel alone at the ends of its range", &args->no_single,
          NULL, NULL},
         {"mirror-every", 0, "N", "hold the mirror image of every N-th pose too; 0 = never (10)", NULL,
@@ -295,6 +323,18 @@ static ris_result parse(ris_cli *cli, int argc, char **argv, soak_args *args, ri
     if (!r && !cli->done) {
         r = read_words(&w, args, err);
     }
+    if (!r && !cli->done) {
+        r = motion_check(&args->motion, err);
+    }
+    if (!r && motion_file(&args->motion)) {
+        args->flipped_share = w.flipped ? args->flipped_share : 0;
+        args->speed_mm_s = w.speed ? args->speed_mm_s : -1; /* a face may move */
+        if (args->pose) {
+            r = ris_fail(err, RIS_ERROR_USAGE, "soak takes --pose or a motion, not both");
+        }
+    } else if (!r && w.every) {
+        r = ris_fail(err, RIS_ERROR_USAGE, "--every is for the frames of a motion");
+    }
     return r;
 }
 
@@ -307,7 +347,7 @@ static ris_result run(ris_cli *cli, int argc, char **argv, ris_error *err)
     }
     r = open_soak(&run, cli, err);
     if (!r) {
-        r = measure_all(&run, cli, err);
+        r = run.clip ? soak_motion_measure(&run, cli, err) : measure_all(&run, cli, err);
     }
     if (!r) {
         (cli->json ? soak_print_json : soak_print_text)(&run);
@@ -319,7 +359,7 @@ static ris_result run(ris_cli *cli, int argc, char **argv, ris_error *err)
 
 const cli_command cmd_soak = {
     .name = "soak",
-    .usage = "HEAD [--poses N] [--seed S | --pose P] [--worst K] [--no-single]",
+    .usage = "HEAD [--poses N | --live-link T | --clip C] [--seed S | --pose P] [--worst K] [--no-single]",
     .summary = "hold random poses and measure what they break",
     .detail =
         "Each pose is held from rest until no vertex is faster than 0.1 mm/s for 0.25 s. Depths in bone, "
@@ -330,6 +370,9 @@ const cli_command cmd_soak = {
         "given\n"
         "to render --pose. Fails with the first broken bound; one broken by a single channel counts like "
         "any,\n"
-        "and a single channel may turn over no triangle of lips and lids. Ctrl-C prints what was measured.\n",
+        "and a single channel may turn over no triangle of lips and lids. Ctrl-C prints what was measured.\n"
+        "With a motion its frames are measured as it moves, every sixtieth of a second; none may turn over "
+        "a\n"
+        "triangle of lips and lids, and --speed bounds how fast a vertex goes.\n",
     .run = run,
 };

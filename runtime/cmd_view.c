@@ -6,6 +6,7 @@
 #include "backend.h"
 #include "base/clock.h"
 #include "layers.h"
+#include "motion.h"
 #include "orbit.h"
 #include "player.h"
 #include "risorius/draw.h"
@@ -18,7 +19,8 @@
 #define SIDE_MAX 8192     /* pixels */
 
 typedef struct view_args {
-    const char *head, *clip, *pose, *size, *frames_text, *screenshot, *layers_text;
+    const char *head, *pose, *size, *frames_text, *screenshot, *layers_text;
+    motion_words motion;
     uint32_t width, height, frames, layers; /* frames: 0 = until closed */
 } view_args;
 
@@ -158,7 +160,7 @@ static ris_result open_surface(view_state *view, ris_error *err)
                              &view->surface, err);
 }
 
-static ris_result open_motion(view_state *view, const view_args *args, ris_error *err)
+static ris_result open_motion(view_state *view, const ris_cli *cli, const view_args *args, ris_error *err)
 {
     const ris_model *model = view->backend.model;
     view->pose = calloc(model->channel_count + 1u, sizeof *view->pose);
@@ -166,11 +168,12 @@ static ris_result open_motion(view_state *view, const view_args *args, ris_error
         return ris_fail(err, RIS_ERROR_MEMORY, "out of memory for a pose");
     }
     ris_result r = RIS_OK;
-    if (args->clip) {
-        r = ris_clip_load(model, args->clip, &view->clip, err);
+    if (motion_file(&args->motion)) {
+        r = motion_load(&args->motion, cli, model, &view->clip, err);
     } else if (args->pose) {
         r = ris_pose_parse(model, args->pose, view->pose, err);
     }
+    motion_start(&args->motion, view->backend.sim);
     return r ? r : player_init(&view->player, view->backend.sim, view->clip, view->pose, err);
 }
 
@@ -190,7 +193,7 @@ static ris_result open_view(view_state *view, const ris_cli *cli, const view_arg
                                .instance_extension_count = extension_count};
     ris_result r = backend_open(&view->backend, cli, args->head, &need, err);
     if (!r) {
-        r = open_motion(view, args, err);
+        r = open_motion(view, cli, args, err);
     }
     if (!r) {
         r = open_window(view, args, err);
@@ -356,7 +359,7 @@ static ris_result take_screenshot(view_state *view, const char *path, ris_error 
 static ris_result parse(ris_cli *cli, view_args *args, int argc, char **argv, ris_error *err)
 {
     const cli_option options[] = {
-        {"clip", 'c', "CLIP", "the clip to play", NULL, &args->clip, NULL},
+        MOTION_OPTIONS(&args->motion),
         {"pose", 'p', "POSE", "a pose to hold instead: name=value[,name=value...]", NULL, &args->pose, NULL},
         {"size", 's', "WxH", "size of the window (900x900)", NULL, &args->size, NULL},
         {"layers", 0, "LIST", LAYER_NAMES " (skin)", NULL, &args->layers_text, NULL},
@@ -370,7 +373,10 @@ static ris_result parse(ris_cli *cli, view_args *args, int argc, char **argv, ri
         return r;
     }
     r = cli_need_head(&cmd_view, count, err);
-    if (!r && args->clip && args->pose) {
+    if (!r) {
+        r = motion_check(&args->motion, err);
+    }
+    if (!r && motion_file(&args->motion) && args->pose) {
         r = ris_fail(err, RIS_ERROR_USAGE, "view takes --clip or --pose, not both");
     }
     if (!r) {
@@ -407,7 +413,7 @@ static ris_result run(ris_cli *cli, int argc, char **argv, ris_error *err)
 
 const cli_command cmd_view = {
     .name = "view",
-    .usage = "HEAD [--clip C | --pose P]",
+    .usage = "HEAD [--clip C | --live-link T | --openface T | --pose P]",
     .summary = "show a head in a window",
     .detail = "left button      turn                    space  play, pause\n"
               "middle button    pan (or shift + left)   R      restart\n"

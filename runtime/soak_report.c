@@ -1,14 +1,15 @@
 /* The findings of `risorius soak` as a table, as JSON and as a verdict. */
 #include "soak.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define MOST_FLIPPED 8
 
-const char *soak_row_name(uint32_t row)
+const char *soak_row_name(const soak *run, uint32_t row)
 {
-    return row == SOAK_SPEED ? "not at rest" : ris__measure_name((ris_measure)row);
+    return row == SOAK_SPEED ? (run->clip ? "speed" : "not at rest") : ris__measure_name((ris_measure)row);
 }
 
 const char *soak_row_unit(uint32_t row)
@@ -60,8 +61,32 @@ static const char *place(const soak *run, const ris_finding *f, char *out, size_
     return out;
 }
 
+/* What the motion asks for at the frame, as words that hold it. */
+static char *motion_pose_text(const soak *run, uint32_t frame)
+{
+    const ris_model *model = run->backend.model;
+    const size_t size = ((size_t)model->channel_count + 1) * (RIS_NAME_SIZE + 16);
+    char *text = calloc(size, 1);
+    float *pose = calloc(model->channel_count + 1u, sizeof *pose);
+    size_t used = 0;
+    if (text && pose) {
+        ris_clip_sample(run->clip, soak_motion_time_s(run, frame), pose);
+        for (uint32_t c = 0; c < model->channel_count; c++) {
+            if (fabsf(pose[c]) >= 0.0005f) {
+                used += (size_t)snprintf(text + used, size - used, "%s%s=%.4g", used ? "," : "",
+                                         model->channel[c].name, (double)pose[c]);
+            }
+        }
+    }
+    free(pose);
+    return text;
+}
+
 char *soak_pose_text(const soak *run, ris_soak_id id)
 {
+    if (run->clip) {
+        return motion_pose_text(run, id.number);
+    }
     if (!run->args.pose) {
         return ris__soak_pose_text(run->backend.model, run->args.seed, id);
     }
@@ -73,7 +98,9 @@ char *soak_pose_text(const soak *run, ris_soak_id id)
 /* "pose 'few 12' of seed 1" */
 static const char *pose_name(const soak *run, ris_soak_id id, char *out, size_t size)
 {
-    if (run->args.pose) {
+    if (run->clip) {
+        snprintf(out, size, "the frame at %.3f s", soak_motion_time_s(run, id.number));
+    } else if (run->args.pose) {
         snprintf(out, size, "this pose");
     } else {
         snprintf(out, size, "pose '%s %u' of seed %u", ris__soak_kind_name(id.kind), id.number,
@@ -104,7 +131,7 @@ static void print_row(const soak *run, uint32_t k)
 {
     const soak_row *row = &run->row[k];
     char where[256] = "";
-    printf("  %-22s", soak_row_name(k));
+    printf("  %-22s", soak_row_name(run, k));
     print_value(run, k, row->worst_count ? row->worst[0].finding.value : 0);
     printf(" %-9s", soak_row_unit(k));
     print_bound(row);
@@ -150,8 +177,8 @@ static void print_worst(const soak *run)
         if (count == 0) {
             continue;
         }
-        printf("\n%s: worst of %u poses, %u of which have any\n", soak_row_name(k), row->pose_count,
-               row->found_count);
+        printf("\n%s: worst of %u %s, %u of which have any\n", soak_row_name(run, k), row->pose_count,
+               run->clip ? "frames" : "poses", row->found_count);
         if (k >= RIS_MEASURE_SKULL && k <= RIS_MEASURE_LIDS) {
             print_regions(run, k);
         }
@@ -184,8 +211,8 @@ static void print_flipped(const soak *run)
             return;
         }
         const uint32_t *v = model->triangle + 3 * (size_t)best;
-        printf("%s  %u-%u-%u (%s) in %u poses\n", n ? "" : "\nturned over most often\n", v[0], v[1], v[2],
-               ris__measure_region(model, v[0]), run->trace.flipped[best]);
+        printf("%s  %u-%u-%u (%s) in %u poses or frames\n", n ? "" : "\nturned over most often\n", v[0], v[1],
+               v[2], ris__measure_region(model, v[0]), run->trace.flipped[best]);
         last = run->trace.flipped[best];
         last_at = best;
     }
@@ -198,8 +225,8 @@ static void print_rest(const soak *run)
     for (uint32_t k = 0; k < RIS_MEASURE_MIRROR; k++) {
         const ris_finding *f = ris__measurer_rest(run->measurer, (ris_measure)k);
         if (f->value > 0) {
-            printf("  %-22s %9.4g %-9s %u of %u, worst %s\n", soak_row_name(k), f->value, soak_row_unit(k),
-                   f->count, ris__measurer_tested(run->measurer, (ris_measure)k),
+            printf("  %-22s %9.4g %-9s %u of %u, worst %s\n", soak_row_name(run, k), f->value,
+                   soak_row_unit(k), f->count, ris__measurer_tested(run->measurer, (ris_measure)k),
                    place(run, f, where, sizeof where));
         }
     }
@@ -207,11 +234,20 @@ static void print_rest(const soak *run)
 
 void soak_print_text(const soak *run)
 {
-    printf("%s, seed %u: %u of %u poses%s (%u of 1 to 6 channels, %u of all, %u single), %.1f s each, %s\n\n",
-           run->args.head, run->args.seed, run->done, run->total, run->interrupted ? ", interrupted" : "",
-           run->kind_count[0], run->kind_count[1], run->kind_count[2],
-           run->done ? run->held_s / run->done : 0.0, ris_sim_backend(run->backend.sim));
-    printf("  %-22s %9s %-9s %9s %9s %7s\n", "measure", "worst", "", "bound", "at rest", "poses");
+    if (run->clip) {
+        printf("%s, %s: %u of %u frames%s, one in %u, %.2f s, %s\n\n", run->args.head,
+               motion_file(&run->args.motion), run->done, run->total, run->interrupted ? ", interrupted" : "",
+               run->args.every, run->done ? soak_motion_time_s(run, run->done - 1) : 0.0,
+               ris_sim_backend(run->backend.sim));
+    } else {
+        printf("%s, seed %u: %u of %u poses%s (%u of 1 to 6 channels, %u of all, %u single), %.1f s each, "
+               "%s\n\n",
+               run->args.head, run->args.seed, run->done, run->total, run->interrupted ? ", interrupted" : "",
+               run->kind_count[0], run->kind_count[1], run->kind_count[2],
+               run->done ? run->held_s / run->done : 0.0, ris_sim_backend(run->backend.sim));
+    }
+    printf("  %-22s %9s %-9s %9s %9s %7s\n", "measure", "worst", "", "bound", "at rest",
+           run->clip ? "frames" : "poses");
     for (uint32_t k = 0; k < SOAK_COUNT; k++) {
         print_row(run, k);
     }
@@ -241,8 +277,15 @@ static void print_json_record(const soak *run, const soak_record *r)
     printf(", \"part\": ");
     cli_json_string(stdout, f->part);
     char *text = soak_pose_text(run, r->id);
-    printf(", \"piece\": %u, \"count\": %u, \"kind\": \"%s\", \"number\": %u, \"pose\": ", f->piece, f->count,
-           run->args.pose ? "given" : ris__soak_kind_name(r->id.kind), r->id.number);
+    printf(", \"piece\": %u, \"count\": %u, \"kind\": \"%s\", \"number\": %u", f->piece, f->count,
+           run->clip        ? "frame"
+           : run->args.pose ? "given"
+                            : ris__soak_kind_name(r->id.kind),
+           r->id.number);
+    if (run->clip) {
+        printf(", \"time_s\": %.6g", soak_motion_time_s(run, r->id.number));
+    }
+    printf(", \"pose\": ");
     cli_json_string(stdout, text ? text : "");
     printf("}");
     free(text);
@@ -266,7 +309,7 @@ void soak_print_json(const soak *run)
             continue;
         }
         printf("%s\n    {\"name\": \"%s\", \"unit\": \"%s\", \"holds\": %s, \"poses\": %u, \"broken\": %u, ",
-               first ? "" : ",", soak_row_name(k), soak_row_unit(k),
+               first ? "" : ",", soak_row_name(run, k), soak_row_unit(k),
                soak_row_broken(run, k) ? "false" : "true", row->pose_count, row->broken_count);
         first = false;
         if (row->bounded) {
@@ -296,11 +339,11 @@ ris_result soak_verdict(const soak *run, ris_error *err)
                 err, RIS_ERROR_FAILED,
                 "%s: a share of %.3g of the triangles of lips and lids, where %g is allowed, and up to "
                 "%.0f of one channel alone, where none is",
-                soak_row_name(k), soak_row_value(run, k), row->bound, row->single.finding.value);
+                soak_row_name(run, k), soak_row_value(run, k), row->bound, row->single.finding.value);
         }
         const soak_record *worst = &row->worst[0];
         return ris_fail(err, RIS_ERROR_FAILED, "%s: %.4g %s at %s in %s, where %g is allowed",
-                        soak_row_name(k), worst->finding.value, soak_row_unit(k),
+                        soak_row_name(run, k), worst->finding.value, soak_row_unit(k),
                         place(run, &worst->finding, where, sizeof where),
                         pose_name(run, worst->id, name, sizeof name), row->bound);
     }

@@ -139,10 +139,10 @@ ris_result ris_take_adjust(ris_take_def *def, const char *words, ris_error *err)
     const struct {
         const char *name;
         bool *flag;
-    } flag[] = {{"mirror", &def->mirror},           {"flip-yaw", &def->flip_yaw},
-                {"flip-pitch", &def->flip_pitch},   {"flip-roll", &def->flip_roll},
-                {"center", &def->center},           {"no-head", &def->no_head},
-                {"keep-spikes", &def->keep_spikes}, {"degrees", &def->degrees}};
+    } flag[] = {
+        {"mirror", &def->mirror},           {"flip-yaw", &def->flip_yaw}, {"flip-pitch", &def->flip_pitch},
+        {"flip-roll", &def->flip_roll},     {"center", &def->center},     {"no-head", &def->no_head},
+        {"keep-spikes", &def->keep_spikes}, {"onset", &def->onset},       {"degrees", &def->degrees}};
     for (const char *at = words;; at++) {
         const size_t length = strcspn(at, ",");
         const char *end = at + length;
@@ -166,7 +166,7 @@ ris_result ris_take_adjust(ris_take_def *def, const char *words, ris_error *err)
         if (!known) {
             result = ris_fail(err, RIS_ERROR_USAGE,
                               "--adjust: expected mirror, flip-yaw, flip-pitch, flip-roll, landscape, "
-                              "center, no-head, keep-spikes, degrees, rate=HZ or confidence=C, found "
+                              "center, no-head, keep-spikes, onset, degrees, rate=HZ or confidence=C, found "
                               "\"%.*s\"",
                               (int)(length < 40 ? length : 40), at);
         }
@@ -186,7 +186,8 @@ const char *ris_take_describe(const ris_take_info *info, char *out, size_t size)
                 {info->repeated, "rows of a time that was there"},
                 {info->other_faces, "rows of another face"},
                 {info->spikes, "leaps of one frame taken out"},
-                {info->clamped, "values clamped to their range"}};
+                {info->clamped, "values clamped to their range"},
+                {info->unknown, "columns this head has nothing for"}};
     int used = snprintf(out, size, "%u of %u rows, %u columns that move, %.2f s at %g Hz", info->samples,
                         info->rows, info->columns, info->duration_s, info->rate_hz);
     if (info->gaps && used > 0 && (size_t)used < size) {

@@ -18,13 +18,14 @@ typedef struct ris_take_def {
     bool center;                          /* the median of each angle of the head becomes its zero */
     bool no_head;                         /* the head stays where it is */
     bool keep_spikes;                     /* leaves samples that leap for one frame */
-    double rate_hz;                       /* frames a second of the timecode, 0 = from the timecode itself */
-    double confidence;                    /* OpenFace rows below it are bridged (0.7) */
-    bool degrees; /* Live Link Face angles are in degrees; so they are taken anyway if one is above pi */
+    bool onset;        /* muscles take their own time besides (ris_sim_set_onset); the player's matter */
+    double rate_hz;    /* frames a second of the timecode, 0 = from the timecode itself */
+    double confidence; /* OpenFace rows below it are bridged (0.7) */
+    bool degrees;      /* Live Link Face angles are in degrees; so they are taken anyway if one is above pi */
 } ris_take_def;
 
 ris_take_def ris_default_take_def(ris_take_format format);
-/* "mirror,flip-yaw,flip-pitch,flip-roll,landscape,center,no-head,keep-spikes,degrees,rate=HZ,confidence=C" into def;
+/* "mirror,flip-yaw,flip-pitch,flip-roll,landscape,center,no-head,keep-spikes,onset,degrees,rate=HZ,confidence=C" into def;
  * landscape is flip-yaw,flip-pitch. RIS_ERROR_USAGE for another word. */
 ris_result ris_take_adjust(ris_take_def *def, const char *words, ris_error *err);
 
@@ -38,7 +39,9 @@ typedef struct ris_take_info {
     uint32_t gaps;          /* places where samples are more than one and a half frames apart, bridged */
     double longest_gap_s;   /* between two samples */
     uint32_t spikes;        /* samples replaced, of all columns */
-    uint32_t clamped;       /* values outside their range */
+    uint32_t unknown;       /* columns that move nothing on this head */
+    char first_unknown[RIS_NAME_SIZE]; /* its name */
+    uint32_t clamped;                  /* values outside their range */
     double rate_hz, duration_s;
     bool degrees; /* angles of the head were degrees */
 } ris_take_info;
