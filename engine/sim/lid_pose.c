@@ -116,6 +116,17 @@ static ris_vec3 clear_lining(const lid_state *s, const ris_lid_eye *eye, const r
     return v3_scale(p, f_max(r, now + lid->gap_mm) / r);
 }
 
+static bool is_zero(ris_vec3 v)
+{
+    return v.x == 0.0f && v.y == 0.0f && v.z == 0.0f;
+}
+
+/* What moves the margin that a node meets or, of the lining, hangs on. */
+static ris_vec3 facing_move(const ris_rig *rig, const ris_lid_node *lid)
+{
+    return v3_lerp(rig->lid_move[lid->facing[0]], rig->lid_move[lid->facing[1]], lid->facing_share);
+}
+
 /* Place of the node relative to the eye's centre. own: what muscles and jaw move it by. */
 static ris_vec3 place(const lid_state *s, const ris_rig *rig, const ris_lid_node *lid, uint32_t k,
                       ris_vec3 rest, double cosine, double sine)
@@ -129,9 +140,7 @@ static ris_vec3 place(const lid_state *s, const ris_rig *rig, const ris_lid_node
                     scale = (r + lid->close_mm * s->closed + FULL_MM * full) / r;
         p = v3(p.x, p.y * scale, p.z * scale);
     }
-    const ris_vec3 facing =
-        v3_lerp(rig->lid_move[lid->facing[0]], rig->lid_move[lid->facing[1]], lid->facing_share);
-    p = v3_add(p, v3_lerp(rig->lid_move[k], facing, lid->lining ? 1.0f : shut));
+    p = v3_add(p, v3_lerp(rig->lid_move[k], facing_move(rig, lid), lid->lining ? 1.0f : shut));
     return lid->lining ? clear_lining(s, eye, lid, p) : clear_eye(s, eye, lid, rest, p);
 }
 
@@ -149,10 +158,9 @@ void ris__lid_pose(ris_rig *rig, const float *pose)
         const lid_state *s = &state[lid->eye];
         const uint32_t i = lid->node;
         const ris_vec3 centre = model->lid_eye[lid->eye].centre;
-        const ris_vec3 before = v3_sub(rig->target[i], v4_xyz(rig->delta[i])),
-                       move = rig->lid_move[lid->lining ? lid->facing[0] : k];
-        if (s->still && move.x == 0.0f && move.y == 0.0f && move.z == 0.0f) {
-            continue;
+        const ris_vec3 before = v3_sub(rig->target[i], v4_xyz(rig->delta[i]));
+        if (s->still && is_zero(rig->lid_move[k]) && (!lid->lining || is_zero(facing_move(rig, lid)))) {
+            continue; /* at rest to the bit */
         }
         double cosine, sine;
         ris__cos_sin((double)node_turn(s, lid), &cosine, &sine);

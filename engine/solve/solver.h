@@ -1,0 +1,69 @@
+/* The solver inside: how the face answers to its controls, steps, and leaving out what is not needed. */
+#pragma once
+
+#include "risorius/solve.h"
+
+/* A control in the solver: its value over scale is u, between low and high, rest 0. */
+typedef struct ris_knob {
+    double scale, low, high;
+} ris_knob;
+
+/* Positions and velocities of a simulation, (node_count) each, in one allocation. */
+typedef struct ris_snapshot {
+    ris_vec4 *state[4];
+} ris_snapshot;
+
+typedef struct ris_solver {
+    const ris_solve_def *def;
+    const ris_model *model;
+    const ris_target *target;
+    uint32_t n, rows; /* controls; 3 x points of the target */
+    ris_knob *knob;   /* (n) */
+    float *unit;      /* pose of each control at u = 1, not clamped (n x channel_count) */
+    double *u;        /* present values (n) */
+    float *pose;      /* (channel_count) */
+    ris_snapshot now; /* sim[0] at u */
+    float *seen;      /* what the target sees at u (rows) */
+    float *column;    /* response per unit of u at u (n x rows) */
+    double *step;     /* secant step of each column in u, with sign (n) */
+    bool *frozen;     /* stays as it is (n) */
+    uint32_t holds, iteration;
+    double rms_mm, damping;
+    /* the normal equations of a step, per point of the target, and what solves them */
+    double *gram, *damped, *work;                 /* (n x n); work: n^2 + 2 n */
+    double *g, *right, *low, *high, *d, *tried_u; /* (n) */
+    bool *wanted;                                 /* (n) */
+    float *tried_seen, *tried_pose;               /* (rows), (channel_count) */
+    ris_vec4 *position;                           /* (node_count) */
+} ris_solver;
+
+/* pose of values u into pose (channel_count), clamped. */
+void ris__solver_pose(const ris_solver *solver, const double *u, float *pose);
+/* What the target looks at, of the sim and its positions, into seen (3 x points). */
+void ris__solver_see(const ris_solver *solver, const ris_sim *sim, const ris_vec4 *position, float *seen);
+ris_result ris__snapshot_take(ris_sim *sim, ris_snapshot *out, ris_error *err);
+ris_result ris__snapshot_put(ris_sim *sim, const ris_snapshot *snapshot, ris_error *err);
+ris_result ris__snapshot_make(const ris_model *model, ris_snapshot *out, ris_error *err);
+void ris__snapshot_free(ris_snapshot *snapshot);
+
+#define RIS_SOLVER_NOTHING 0.004 /* u as good as rest */
+
+/* A secant that stays in the range; up unless it cannot or the last one went down; of a little, to rest: a muscle's first tenth
+ * is unlike the rest of its range. */
+void ris__solver_choose_step(ris_solver *solver, uint32_t control, double size);
+/* Columns and normal equations at u, of what is not frozen. */
+ris_result ris__solver_linearise(ris_solver *solver, ris_error *err);
+/* Holds the pose of tried_u from where sim[0] stands and looks: tried_pose, tried_seen. *out_rms in mm. */
+ris_result ris__solver_try(ris_solver *solver, double *out_rms, ris_error *err);
+/* What was tried becomes the state. */
+ris_result ris__solver_keep(ris_solver *solver, ris_error *err);
+/* Steps of growing damping until one brings the face nearer, after ris__solver_linearise. *out_gain: share of the cost that it
+ * saved, 0 = none. */
+ris_result ris__solver_improve(ris_solver *solver, double *out_gain, ris_error *err);
+
+/* Leaves out controls that others stand in for or that the target hardly needs, as long as the face stays as near. */
+ris_result ris__solver_thin_out(ris_solver *solver, ris_error *err);
+
+/* Fills the columns of the wanted controls (n) by secants of step from the state now: a few ticks with each control changed,
+ * less the same ticks without. Uses all simulations. RIS_ERROR_FAILED when go_on says so. */
+ris_result ris__solver_respond(ris_solver *solver, const bool *wanted, ris_error *err);
