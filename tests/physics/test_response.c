@@ -107,7 +107,7 @@ static void a_sudden_pose_is_no_blow(void **state)
     } cases[] = {
         {"zygomaticus_major=1", 50, 100, 150},
         {"jaw.open=1", 60, 110, 150},
-        {"frontalis_inner=1,frontalis_outer=1", 50, 100, 150},
+        {"frontalis_inner=1,frontalis_middle=1,frontalis_outer=1", 70, 120, 200},
         {"corrugator_supercilii=1,procerus=1", 50, 100, 150},
         {"orbicularis_oris_superior=1,orbicularis_oris_inferior=1", 50, 100, 150},
         {"lid.upper=1", 30, 60, 100},

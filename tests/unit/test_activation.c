@@ -145,7 +145,7 @@ static void everything_in_its_own_time(void **state)
     assert_true(fabsf(muscle - 0.29382f) < 1e-4f);
     assert_true(lid > muscle && muscle > jaw && jaw > 0.0f);
     assert_true(value(&f, "orbicularis_oris_superior.protrude") == muscle);
-    assert_true(value(&f, "tongue.out") == muscle);
+    assert_true(value(&f, "tongue.out") == muscle && value(&f, "cheek.puff.L") == muscle);
     assert_true(value(&f, "eye.yaw.L") == 35.0f && value(&f, "head.pitch") == 60.0f &&
                 value(&f, "head.x") == 200.0f);
     /* release is slower */

@@ -167,7 +167,7 @@ typedef struct ris_tissue_def {
 /* How flesh moves in time. How fast what a pose asks for becomes activation: ms until 90 % of a sudden change is done, 0 = at once (docs/physics.md,
  * activation). All 0 in the kaehler tissue. */
 typedef struct ris_dynamics_def {
-    float onset_ms, release_ms;         /* muscles without times of their own, protrusion, tongue */
+    float onset_ms, release_ms; /* muscles without times of their own, protrusion, tongue, puffed cheeks */
     float lid_onset_ms, lid_release_ms; /* muscles of the lids, lid channels */
     float jaw_onset_ms, jaw_release_ms; /* muscles between bones, jaw channels */
     /* head_inertia: share of the head's acceleration that the skin feels, and of its weight when the head is tilted */
