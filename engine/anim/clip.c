@@ -68,6 +68,8 @@ static void sample_layer(const ris_clip_layer *layer, clip_time time, pose_block
     double local_s = repeats ? wrap(own.local_s, layer->duration_s) : hold(own.local_s, layer->duration_s);
     if (layer->clip) {
         sample_block(layer->clip, (clip_time){local_s, own.going_s}, repeats, block);
+    } else if (layer->speech) {
+        ris__speech_add(layer->speech, local_s, block->first, block->count, block->value);
     } else {
         add_tracks(layer, local_s, block);
     }
@@ -180,7 +182,27 @@ static void add_moment(const ris_clip *clip, moment *list, size_t *count, double
     }
 }
 
-/* Keys of tracks and weights, labels of included clips: of a layer that repeats those of the first round. */
+/* Keys of tracks, labels of included clips, middles of phones: of a layer that repeats those of the first round. */
+static void collect_layer(const ris_clip *clip, const ris_clip_layer *layer, moment *list, size_t *count)
+{
+    const double start_s = layer->start_s, speed = layer->speed;
+    for (uint32_t i = 0; i < layer->track_count; i++) {
+        for (uint32_t n = 0; n < layer->track[i].key_count; n++) {
+            add_moment(clip, list, count, start_s + layer->track[i].key[n].t_s / speed, NULL);
+        }
+    }
+    for (uint32_t i = 0; layer->clip && i < layer->clip->label_count; i++) {
+        const ris_label *label = &layer->clip->label[i];
+        add_moment(clip, list, count, start_s + label->t_s / speed, label->name);
+    }
+    for (uint32_t i = 0; layer->speech && i < layer->speech->segment_count; i++) {
+        const ris_utterance *segment = &layer->speech->segment[i];
+        if (segment->phone[0]) {
+            add_moment(clip, list, count, start_s + segment->middle_s / speed, segment->phone);
+        }
+    }
+}
+
 static size_t collect_moments(const ris_clip *clip, moment *list)
 {
     size_t count = 0;
@@ -189,16 +211,7 @@ static size_t collect_moments(const ris_clip *clip, moment *list)
         for (uint32_t i = 0; i < layer->weight.key_count; i++) {
             add_moment(clip, list, &count, layer->weight.key[i].t_s, NULL);
         }
-        for (uint32_t i = 0; i < layer->track_count; i++) {
-            for (uint32_t n = 0; n < layer->track[i].key_count; n++) {
-                add_moment(clip, list, &count, layer->start_s + layer->track[i].key[n].t_s / layer->speed,
-                           NULL);
-            }
-        }
-        for (uint32_t i = 0; layer->clip && i < layer->clip->label_count; i++) {
-            const ris_label *label = &layer->clip->label[i];
-            add_moment(clip, list, &count, layer->start_s + label->t_s / layer->speed, label->name);
-        }
+        collect_layer(clip, layer, list, &count);
     }
     if (count == 0) {
         add_moment(clip, list, &count, 0, NULL);
@@ -213,6 +226,7 @@ static size_t moment_room(const ris_clip *clip)
     for (uint32_t k = 0; k < clip->layer_count; k++) {
         const ris_clip_layer *layer = &clip->layer[k];
         room += layer->weight.key_count + (layer->clip ? layer->clip->label_count : 0);
+        room += layer->speech ? layer->speech->segment_count : 0;
         for (uint32_t i = 0; i < layer->track_count; i++) {
             room += layer->track[i].key_count;
         }
@@ -287,6 +301,7 @@ void ris_clip_destroy(ris_clip *clip)
         ris__track_finish(&layer->weight);
         ris_clip_destroy(layer->clip);
         ris__idle_destroy(layer->idle);
+        ris__speech_destroy(layer->speech);
         free(layer->touches);
     }
     free(clip->layer);

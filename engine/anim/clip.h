@@ -1,7 +1,8 @@
-/* A clip in memory: layers of tracks, of other clips and of idle life, targets already resolved to channels. */
+/* A clip in memory: layers of tracks, other clips, idle life and speech, targets already resolved to channels. */
 #pragma once
 
 #include "anim/idle.h"
+#include "anim/speech.h"
 #include "anim/track.h"
 #include "risorius/timeline.h"
 
@@ -17,6 +18,7 @@ typedef struct ris_clip_layer {
     ris_track *track; /* in the layer's own time, and so is what else it plays (NULL but one) */
     ris_clip *clip;
     ris_idle *idle;
+    ris_speech *speech;
     bool *touches; /* (channel_count) of a layer that overrides */
 } ris_clip_layer;
 

@@ -19,7 +19,7 @@
 #include <string.h>
 
 #define SKEW 0.55           /* deviation of the logarithm of intervals: mean 5.2, deviation 3.1 */
-#define GAP_S 0.45          /* least time between the starts of two blinks */
+#define GAP_S 0.5           /* least time between the starts of two blinks */
 #define QUIET_S 1.0         /* at the end of a round, so that the next can begin at rest */
 #define DRIFT_S 1.2         /* between control values of the head's drift */
 #define DRIFT_GAIN 1.45     /* the spline evens control values out to 0.69 of their deviation */
@@ -230,7 +230,7 @@ static double blink_at(const ris_idle *idle, double time_s)
     if (since < blink->close_s) {
         return blink->depth * ris__ease(RIS_EASE_MINIMUM_JERK, since / blink->close_s);
     }
-    double u = (since - blink->close_s) / blink->open_s;
+    double u = fmax(since - blink->close_s - RIS_BLINK_HOLD_S, 0) / blink->open_s;
     /* faster at first, slow at the end */
     return u < 1 ? blink->depth * (1 - ris__ease(RIS_EASE_MINIMUM_JERK, u * (1.5 - 0.5 * u))) : 0;
 }

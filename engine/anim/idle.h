@@ -5,6 +5,7 @@
 
 #include "risorius/model.h"
 
+#define RIS_BLINK_HOLD_S 0.03   /* the lids stay down: what they hang on needs that to arrive */
 #define RIS_IDLE_ROUND_S 1800.0 /* after half an hour the same life again */
 
 typedef struct ris_idle_def {

@@ -103,6 +103,9 @@ static void touch(const ris_clip_layer *layer, bool *touches)
     if (layer->idle) {
         ris__idle_touch(layer->idle, touches);
     }
+    if (layer->speech) {
+        ris__speech_touch(layer->speech, touches);
+    }
 }
 
 /* Where and how long the layer runs; before its content, whose keys must lie within. */
@@ -126,13 +129,27 @@ static ris_result read_times(const ris_json_at *at, ris_clip_reader *r, ris_clip
     return loop.value ? ris__read_bool(&loop, &layer->repeats, r->err) : RIS_OK;
 }
 
+static ris_result read_speech(const ris_json_at *at, const ris_json_at *list, ris_clip_reader *r,
+                              ris_clip_layer *layer)
+{
+    double lead_s = RIS_SPEECH_LEAD_S;
+    ris_json_at lead = ris__json_key(at, "lead_s");
+    ris_result result = ris__json_double(&lead, RIS_JSON_OPTIONAL, 0, 1, &lead_s, r->err);
+    return result ? result
+                  : ris__speech_read(list, r->names.model, layer->duration_s, lead_s, &layer->speech, r->err);
+}
+
 static ris_result read_content(const ris_json_at *at, ris_clip_reader *r, ris_clip_layer *layer)
 {
     ris_json_at tracks = ris__json_key(at, "tracks"), clip = ris__json_key(at, "clip");
-    ris_json_at idle = ris__json_key(at, "idle");
+    ris_json_at idle = ris__json_key(at, "idle"), speech = ris__json_key(at, "speech");
     ris_result result = RIS_OK;
-    if (!!tracks.value + !!clip.value + !!idle.value != 1) {
-        return ris__json_fail(at, r->err, "expected one of \"tracks\", \"clip\" and \"idle\"");
+    if (!!tracks.value + !!clip.value + !!idle.value + !!speech.value != 1) {
+        return ris__json_fail(at, r->err, "expected one of \"tracks\", \"clip\", \"idle\" and \"speech\"");
+    }
+    ris_json_at lead = ris__json_key(at, "lead_s");
+    if (lead.value && !speech.value) {
+        return ris__json_fail(&lead, r->err, "only speech has a lead");
     }
     if (clip.value) {
         result = read_include(&clip, r, layer);
@@ -142,13 +159,18 @@ static ris_result read_content(const ris_json_at *at, ris_clip_reader *r, ris_cl
     if (result == RIS_OK) {
         result = read_times(at, r, layer);
     }
-    return result == RIS_OK && tracks.value ? ris__read_tracks(&tracks, r, layer) : result;
+    if (result == RIS_OK && tracks.value) {
+        result = ris__read_tracks(&tracks, r, layer);
+    } else if (result == RIS_OK && speech.value) {
+        result = read_speech(at, &speech, r, layer);
+    }
+    return result;
 }
 
 static ris_result read_layer(const ris_json_at *at, ris_clip_reader *r, ris_clip_layer *layer)
 {
-    static const char *const keys[] = {"name", "mode",   "weight", "start_s", "speed", "duration_s",
-                                       "loop", "tracks", "clip",   "idle",    NULL};
+    static const char *const keys[] = {"name",   "mode", "weight", "start_s", "speed",  "duration_s", "loop",
+                                       "tracks", "clip", "idle",   "speech",  "lead_s", NULL};
     static const char *const modes[] = {"add", "override", NULL};
     uint32_t mode = 0;
     ris_json_at name = ris__json_key(at, "name"), mode_at = ris__json_key(at, "mode");

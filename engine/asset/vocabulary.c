@@ -159,7 +159,8 @@ static ris_result check_name(const ris_json_at *at, ris_word_kind kind, const ch
 
 static ris_result read_word(const ris_json_at *at, ris_word_kind kind, ris_vocabulary *out, ris_error *err)
 {
-    static const char *const keys[] = {"title", "terms", "source", NULL};
+    /* "speech" of a viseme is for engine/anim/phonetics.c */
+    static const char *const keys[] = {"title", "terms", "source", "speech", NULL};
     ris_json_at title = ris__json_key(at, "title"), terms = ris__json_key(at, "terms");
     ris_json_at source = ris__json_key(at, "source");
     ris_word *word = &out->word[out->word_count];

@@ -98,7 +98,7 @@ static void test_blinks(void **state)
         assert_true(blink->depth > 0.9 && blink->depth <= 1);
         if (i > 0) {
             double wait = blink->start_s - blink[-1].start_s;
-            assert_true(wait >= blink[-1].close_s + blink[-1].open_s);
+            assert_true(wait >= blink[-1].close_s + RIS_BLINK_HOLD_S + blink[-1].open_s);
             sum += wait;
             squares += wait * wait;
         }
@@ -117,7 +117,7 @@ static void test_blinks(void **state)
     assert_float_equal(before, blink->depth, 1e-6);
     assert_float_equal(pose[LOWER_L], 0.15 * blink->depth, 1e-6);
     for (int i = 1; i <= 100; i++) {
-        life(idle, blink->start_s + blink->close_s + blink->open_s * i / 100, pose);
+        life(idle, blink->start_s + blink->close_s + RIS_BLINK_HOLD_S + blink->open_s * i / 100, pose);
         assert_true(pose[UPPER_L] <= before);
         before = pose[UPPER_L];
     }

@@ -202,7 +202,8 @@ static void test_refuses(void **state)
         const char *text, *says;
     } bad[] = {
         {START "\"layers\":[]}", "layers: expected"},
-        {START "\"layers\":[{}]}", "layers[0]: expected one of \"tracks\", \"clip\" and \"idle\""},
+        {START "\"layers\":[{}]}",
+         "layers[0]: expected one of \"tracks\", \"clip\", \"idle\" and \"speech\""},
         {START "\"layers\":[{\"idle\":{},\"tracks\":[" RAMP("jaw.open") "]}]}", "layers[0]: expected one of"},
         {START "\"layers\":[{\"mode\":\"mix\",\"idle\":{}}]}",
          "layers[0].mode: expected one of add, override, found \"mix\""},
