@@ -179,18 +179,26 @@ static ris_result load(const ris_model *model, const char *path, const ris_clip_
     return result;
 }
 
+ris_result ris__clip_count_file(const char *path, const ris_clip_reader *r)
+{
+    if (++*r->file_count > MAX_FILES) {
+        return ris_fail(r->err, RIS_ERROR_DATA, "%s: clips include more than %d files", path, MAX_FILES);
+    }
+    return RIS_OK;
+}
+
 ris_result ris__clip_include(const char *path, const ris_clip_reader *outer, ris_clip **out)
 {
     uint32_t depth = 1;
     for (const ris_clip_reader *r = outer; r; r = r->outer) {
         depth++;
     }
-    if (depth > MAX_DEPTH || ++*outer->file_count > MAX_FILES) {
-        return ris_fail(outer->err, RIS_ERROR_DATA,
-                        "%s: clips include clips more than %d deep, or more than %d in all", path, MAX_DEPTH,
-                        MAX_FILES);
+    if (depth > MAX_DEPTH) {
+        return ris_fail(outer->err, RIS_ERROR_DATA, "%s: clips include clips more than %d deep", path,
+                        MAX_DEPTH);
     }
-    return load(outer->names.model, path, outer, out, outer->err);
+    ris_result result = ris__clip_count_file(path, outer);
+    return result ? result : load(outer->names.model, path, outer, out, outer->err);
 }
 
 ris_result ris_clip_load(const ris_model *model, const char *path, ris_clip **out, ris_error *err)

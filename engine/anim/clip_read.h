@@ -35,5 +35,7 @@ ris_result ris__read_tracks(const ris_json_at *at, ris_clip_reader *r, ris_clip_
 ris_result ris__read_layers(const ris_json_at *plain, const ris_json_at *list, ris_clip_reader *r);
 ris_result ris__read_bool(const ris_json_at *at, bool *out, ris_error *err);
 ris_result ris__clip_no_memory(const ris_json_at *at, ris_error *err);
+/* Refuses a file that is one too many. */
+ris_result ris__clip_count_file(const char *path, const ris_clip_reader *r);
 /* A clip of another file that outer includes. */
 ris_result ris__clip_include(const char *path, const ris_clip_reader *outer, ris_clip **out);

@@ -1,6 +1,7 @@
 /* KA-50: reads the layers of a clip. */
 #include "anim/clip_read.h"
 #include "base/file.h"
+#include "risorius/take.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -66,9 +67,10 @@ static ris_result read_idle(const ris_json_at *at, ris_clip_reader *r, ris_clip_
     return layer->idle ? RIS_OK : ris__clip_no_memory(at, r->err);
 }
 
-static ris_result read_include(const ris_json_at *at, ris_clip_reader *r, ris_clip_layer *layer)
+/* The path of a file that is named in this one: relative to its folder. */
+static ris_result read_path(const ris_json_at *at, ris_clip_reader *r, char out[RIS_PATH_SIZE])
 {
-    char name[1024], path[RIS_PATH_SIZE], folder[RIS_PATH_SIZE];
+    char name[1024], folder[RIS_PATH_SIZE];
     ris_result result = ris__json_text(at, RIS_JSON_REQUIRED, name, sizeof name, r->err);
     if (result != RIS_OK) {
         return result;
@@ -78,16 +80,39 @@ static ris_result read_include(const ris_json_at *at, ris_clip_reader *r, ris_cl
     }
     const char *slash = strrchr(r->path, '/');
     snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - r->path + 1) : 0, r->path);
-    result = ris__path_join(path, folder, name, r->err);
-    if (result != RIS_OK) {
-        return result;
-    }
-    for (const ris_clip_reader *outer = r; outer; outer = outer->outer) {
-        if (strcmp(outer->path, path) == 0) {
+    result = ris__path_join(out, folder, name, r->err);
+    for (const ris_clip_reader *outer = r; !result && outer; outer = outer->outer) {
+        if (strcmp(outer->path, out) == 0) {
             return ris__json_fail(at, r->err, "the clip includes itself through \"%.200s\"", name);
         }
     }
-    return ris__clip_include(path, r, &layer->clip);
+    return result;
+}
+
+static ris_result read_include(const ris_json_at *at, ris_clip_reader *r, ris_clip_layer *layer)
+{
+    char path[RIS_PATH_SIZE];
+    ris_result result = read_path(at, r, path);
+    return result ? result : ris__clip_include(path, r, &layer->clip);
+}
+
+/* A recorded performance (docs/performances.md). */
+static ris_result read_take(const ris_json_at *at, const ris_json_at *adjust, ris_take_format format,
+                            ris_clip_reader *r, ris_clip_layer *layer)
+{
+    char path[RIS_PATH_SIZE], words[256] = "";
+    ris_error reason = {0};
+    ris_take_def def = ris_default_take_def(format);
+    ris_result result;
+    if ((result = read_path(at, r, path)) ||
+        (result = ris__json_text(adjust, RIS_JSON_OPTIONAL, words, sizeof words, r->err))) {
+        return result;
+    }
+    if (words[0] && ris_take_adjust(&def, words, &reason) != RIS_OK) {
+        return ris__json_fail(adjust, r->err, "%s", reason.text);
+    }
+    result = ris__clip_count_file(path, r);
+    return result ? result : ris_take_load(r->names.model, path, &def, &layer->clip, NULL, r->err);
 }
 
 static void touch(const ris_clip_layer *layer, bool *touches)
@@ -139,21 +164,42 @@ static ris_result read_speech(const ris_json_at *at, const ris_json_at *list, ri
                   : ris__speech_read(list, r->names.model, layer->duration_s, lead_s, &layer->speech, r->err);
 }
 
+/* What plays, if it is another file. */
+static ris_result read_file(const ris_json_at *at, ris_clip_reader *r, ris_clip_layer *layer)
+{
+    ris_json_at clip = ris__json_key(at, "clip"), live_link = ris__json_key(at, "live_link");
+    ris_json_at openface = ris__json_key(at, "openface"), adjust = ris__json_key(at, "adjust");
+    if (adjust.value && !live_link.value && !openface.value) {
+        return ris__json_fail(&adjust, r->err, "only a performance is adjusted");
+    }
+    if (clip.value) {
+        return read_include(&clip, r, layer);
+    }
+    if (live_link.value) {
+        return read_take(&live_link, &adjust, RIS_TAKE_LIVE_LINK, r, layer);
+    }
+    return openface.value ? read_take(&openface, &adjust, RIS_TAKE_OPENFACE, r, layer) : RIS_OK;
+}
+
 static ris_result read_content(const ris_json_at *at, ris_clip_reader *r, ris_clip_layer *layer)
 {
-    ris_json_at tracks = ris__json_key(at, "tracks"), clip = ris__json_key(at, "clip");
-    ris_json_at idle = ris__json_key(at, "idle"), speech = ris__json_key(at, "speech");
-    ris_result result = RIS_OK;
-    if (!!tracks.value + !!clip.value + !!idle.value + !!speech.value != 1) {
-        return ris__json_fail(at, r->err, "expected one of \"tracks\", \"clip\", \"idle\" and \"speech\"");
+    static const char *const kinds[] = {"tracks", "clip", "live_link", "openface", "idle", "speech"};
+    ris_json_at tracks = ris__json_key(at, "tracks"), speech = ris__json_key(at, "speech");
+    ris_json_at idle = ris__json_key(at, "idle"), lead = ris__json_key(at, "lead_s");
+    int count = 0;
+    for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
+        count += ris__json_key(at, kinds[i]).value != NULL;
     }
-    ris_json_at lead = ris__json_key(at, "lead_s");
+    if (count != 1) {
+        return ris__json_fail(at, r->err,
+                              "expected one of \"tracks\", \"clip\", \"live_link\", \"openface\", "
+                              "\"idle\" and \"speech\"");
+    }
     if (lead.value && !speech.value) {
         return ris__json_fail(&lead, r->err, "only speech has a lead");
     }
-    if (clip.value) {
-        result = read_include(&clip, r, layer);
-    } else if (idle.value) {
+    ris_result result = read_file(at, r, layer);
+    if (result == RIS_OK && idle.value) {
         result = read_idle(&idle, r, layer);
     }
     if (result == RIS_OK) {
@@ -169,8 +215,9 @@ static ris_result read_content(const ris_json_at *at, ris_clip_reader *r, ris_cl
 
 static ris_result read_layer(const ris_json_at *at, ris_clip_reader *r, ris_clip_layer *layer)
 {
-    static const char *const keys[] = {"name",   "mode", "weight", "start_s", "speed",  "duration_s", "loop",
-                                       "tracks", "clip", "idle",   "speech",  "lead_s", NULL};
+    static const char *const keys[] = {"name",      "mode",     "weight", "start_s", "speed",  "duration_s",
+                                       "loop",      "tracks",   "clip",   "idle",    "speech", "lead_s",
+                                       "live_link", "openface", "adjust", NULL};
     static const char *const modes[] = {"add", "override", NULL};
     uint32_t mode = 0;
     ris_json_at name = ris__json_key(at, "name"), mode_at = ris__json_key(at, "mode");

@@ -153,6 +153,22 @@ static void test_clips_within_clips(void **state)
     ris_clip_destroy(clip);
 }
 
+/* Performances below a clip's own layer: 0.2 rad of gaze are 11.459 degrees, 10 more on the left, and half of all. */
+static void test_performances_as_layers(void **state)
+{
+    (void)state;
+    scratch_write("take.csv", "timestamp, gaze_angle_x\n0, 0.1\n0.5, 0.2\n1, 0.1\n");
+    scratch_write("live.csv", "Timecode,BlendShapeCount,LeftEyeYaw\n0:0:0:0,1,10\n0:0:0:1,1,10\n");
+    ris_clip *clip = load(scratch_write("on_take.json",
+                                        START "\"layers\":[{\"openface\":\"take.csv\",\"start_s\":1},{\"live_"
+                                              "link\":\"live.csv\",\"adjust\":\"no-head\"},"
+                                              "{\"mode\":\"override\",\"weight\":0.5,\"tracks\":[" TRACK(
+                                                  "eye.yaw", "{\"t\":0,\"v\":0},{\"t\":4,\"v\":0}") "]}]}"));
+    assert_float_equal(sample(clip, 1.5, FAKE_YAW_L), 21.4591559 / 2, 1e-4);
+    assert_float_equal(sample(clip, 1.5, FAKE_YAW_R), 11.4591559 / 2, 1e-4);
+    ris_clip_destroy(clip);
+}
+
 static void expect_bad(const char *path, const char *says)
 {
     ris_clip *clip = NULL;
@@ -179,6 +195,13 @@ static void test_includes_that_are_refused(void **state)
         scratch_write(name, text);
     }
     expect_bad(scratch_path("n0.json"), "n8.json: clips include clips more than 8 deep");
+    expect_bad(
+        scratch_write("adjusted.json", START "\"layers\":[{\"openface\":\"take.csv\",\"adjust\":\"turn\"}]}"),
+        "layers[0].adjust: ");
+    expect_bad(scratch_write("no_take.json", START "\"layers\":[{\"adjust\":\"onset\",\"idle\":{}}]}"),
+               "layers[0].adjust: only a performance is adjusted");
+    expect_bad(scratch_write("lost.json", START "\"layers\":[{\"live_link\":\"lost.csv\"}]}"),
+               "lost.csv: cannot open");
     scratch_write("leaf.json", START "\"tracks\":[" HOLD("jaw.open", "1") "]}");
     char *wide = malloc(1 << 16);
     assert_non_null(wide);
@@ -192,7 +215,7 @@ static void test_includes_that_are_refused(void **state)
         scratch_write(level ? "w1.json" : "w0.json", wide);
     }
     free(wide);
-    expect_bad(scratch_path("w1.json"), "or more than 256 in all");
+    expect_bad(scratch_path("w1.json"), "clips include more than 256 files");
 }
 
 static void test_refuses(void **state)
@@ -202,8 +225,8 @@ static void test_refuses(void **state)
         const char *text, *says;
     } bad[] = {
         {START "\"layers\":[]}", "layers: expected"},
-        {START "\"layers\":[{}]}",
-         "layers[0]: expected one of \"tracks\", \"clip\", \"idle\" and \"speech\""},
+        {START "\"layers\":[{}]}", "layers[0]: expected one of \"tracks\", \"clip\", \"live_link\", "
+                                   "\"openface\", \"idle\" and \"speech\""},
         {START "\"layers\":[{\"idle\":{},\"tracks\":[" RAMP("jaw.open") "]}]}", "layers[0]: expected one of"},
         {START "\"layers\":[{\"mode\":\"mix\",\"idle\":{}}]}",
          "layers[0].mode: expected one of add, override, found \"mix\""},
@@ -275,6 +298,7 @@ int main(void)
         cmocka_unit_test(test_track_options),
         cmocka_unit_test(test_whole_clip_repeats),
         cmocka_unit_test(test_clips_within_clips),
+        cmocka_unit_test(test_performances_as_layers),
         cmocka_unit_test(test_includes_that_are_refused),
         cmocka_unit_test(test_refuses),
         cmocka_unit_test(test_many_channels),
