@@ -1,13 +1,15 @@
 /* risorius export HEAD: the skin of a held pose, or of a moment of a clip, as OBJ in the order of skin.obj. */
 #include "backend.h"
+#include "base/file.h"
 #include "motion.h"
 #include "player.h"
 #include "risorius/output.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 typedef struct export_args {
-    const char *head, *pose, *at, *out;
+    const char *head, *pose, *at, *out, *set;
     motion_words motion;
     bool parts;
 } export_args;
@@ -52,7 +54,8 @@ static ris_result reach(const ris_backend *backend, const ris_cli *cli, const ex
 }
 
 /* Writes the skin and, with --parts, everything else, as objects of one file. */
-static ris_result write_obj(const ris_backend *backend, const export_args *args, ris_error *err)
+static ris_result write_obj(const ris_backend *backend, const export_args *args, const char *path,
+                            ris_error *err)
 {
     const ris_head *head = backend->model->head;
     uint32_t node_count = backend->model->node_count, part_count = args->parts ? head->part_count : 0;
@@ -79,7 +82,7 @@ static ris_result write_obj(const ris_backend *backend, const export_args *args,
         r = interrupt_check(err);
     }
     if (!r) {
-        r = ris_obj_write(args->out, object, part_count + 1u, err);
+        r = ris_obj_write(path, object, part_count + 1u, err);
     }
 fail:
     for (uint32_t i = 0; place && i <= part_count; i++) {
@@ -90,16 +93,90 @@ fail:
     return r;
 }
 
+/* In the order of ris_word_kind. */
+static const char *const set_names[] = {"facs", "arkit", "visemes", "expressions"};
+
+/* One file of the set: a word held at 1, or the neutral head (name NULL). */
+static ris_result write_word(const ris_backend *backend, const export_args *args, const char *name,
+                             float *pose, ris_error *err)
+{
+    const ris_model *model = backend->model;
+    char file[RIS_NAME_SIZE + 8], path[RIS_PATH_SIZE];
+    snprintf(file, sizeof file, "%s.obj", name ? name : "neutral");
+    for (uint32_t c = 0; c < model->channel_count; c++) {
+        pose[c] = 0;
+    }
+    ris_result r = ris__path_join(path, args->out, file, err);
+    if (!r && name) {
+        r = ris_pose_add(model, name, 1, pose, err);
+        ris_pose_clamp(model, pose);
+    }
+    if (!r) {
+        r = ris_sim_reset(backend->sim, err);
+    }
+    if (!r) {
+        r = ris_sim_settle(backend->sim, pose, NULL, err);
+    }
+    return r ? r : write_obj(backend, args, path, err);
+}
+
+/* The neutral head and every word of a vocabulary, a file each. */
+static ris_result write_set(const ris_backend *backend, const ris_cli *cli, const export_args *args,
+                            ris_error *err)
+{
+    const ris_vocabulary *words = &backend->model->vocabulary;
+    float *pose = calloc(backend->model->channel_count + 1u, sizeof *pose);
+    uint32_t written = 0;
+    ris_progress bar;
+    ris_result r = pose ? ris__directory_make(args->out, err)
+                        : ris_fail(err, RIS_ERROR_MEMORY, "out of memory for a pose");
+    progress_start(&bar, cli, "export");
+    for (uint32_t i = 0; !r && i <= words->word_count; i++) {
+        const ris_word *word = i ? &words->word[i - 1] : NULL;
+        progress_show(&bar, i, words->word_count + 1);
+        if (!word || strcmp(set_names[word->kind], args->set) == 0) {
+            r = write_word(backend, args, word ? word->name : NULL, pose, err);
+            written += !r;
+        }
+        r = r ? r : interrupt_check(err);
+    }
+    progress_end(&bar);
+    free(pose);
+    if (!r && !cli->quiet) {
+        fprintf(stderr, "wrote %u files in %s (%s)\n", written, args->out, ris_sim_backend(backend->sim));
+    }
+    return r;
+}
+
+static ris_result check_set(const export_args *args, ris_error *err)
+{
+    bool known = false;
+    for (size_t k = 0; k < sizeof set_names / sizeof *set_names; k++) {
+        known = known || strcmp(set_names[k], args->set) == 0;
+    }
+    if (!known) {
+        return ris_fail(err, RIS_ERROR_USAGE,
+                        "--set: expected arkit, facs, visemes or expressions, found '%.40s'", args->set);
+    }
+    if (args->pose || motion_file(&args->motion) || args->at) {
+        return ris_fail(err, RIS_ERROR_USAGE, "export --set makes its own poses");
+    }
+    return RIS_OK;
+}
+
 static ris_result check_args(const export_args *args, ris_error *err)
 {
     if (!args->out) {
-        return ris_fail(err, RIS_ERROR_USAGE, "export needs -o FILE.obj");
+        return ris_fail(err, RIS_ERROR_USAGE, "export needs -o FILE.obj, or --set WORDS -o DIR");
     }
     if (args->pose && motion_file(&args->motion)) {
         return ris_fail(err, RIS_ERROR_USAGE, "export takes --pose or a motion, not both");
     }
     if (!motion_file(&args->motion) != !args->at) {
         return ris_fail(err, RIS_ERROR_USAGE, "export --clip C and --at T belong together");
+    }
+    if (args->set) {
+        return check_set(args, err);
     }
     return motion_check(&args->motion, err);
 }
@@ -113,6 +190,9 @@ static ris_result run(ris_cli *cli, int argc, char **argv, ris_error *err)
         MOTION_OPTIONS(&args.motion),
         {"at", 't', "SECONDS", "the moment of the motion", NULL, &args.at, NULL},
         {"output", 'o', "FILE.obj", "the file to write", NULL, &args.out, NULL},
+        {"set", 0, "WORDS",
+         "arkit, facs, visemes or expressions: each name held at 1, as DIR/NAME.obj with -o DIR", NULL,
+         &args.set, NULL},
         {"parts", 0, NULL, "eyes, teeth, tongue and the rest too", &args.parts, NULL, NULL},
         {0},
     };
@@ -130,13 +210,13 @@ static ris_result run(ris_cli *cli, int argc, char **argv, ris_error *err)
     }
     ris_backend backend;
     r = backend_open(&backend, cli, args.head, &(backend_need){.sim = true}, err);
-    if (!r) {
+    if (!r && args.set) {
+        r = write_set(&backend, cli, &args, err);
+    } else if (!r) {
         r = reach(&backend, cli, &args, err);
+        r = r ? r : write_obj(&backend, &args, args.out, err);
     }
-    if (!r) {
-        r = write_obj(&backend, &args, err);
-    }
-    if (!r && !cli->quiet) {
+    if (!r && !args.set && !cli->quiet) {
         fprintf(stderr, "wrote %s (%s)\n", args.out, ris_sim_backend(backend.sim));
     }
     backend_close(&backend);
@@ -145,7 +225,7 @@ static ris_result run(ris_cli *cli, int argc, char **argv, ris_error *err)
 
 const cli_command cmd_export = {
     .name = "export",
-    .usage = "HEAD [--pose P | --clip C --at T] -o FILE.obj [--parts]",
+    .usage = "HEAD [--pose P | --clip C --at T] -o FILE.obj [--parts], or HEAD --set WORDS -o DIR",
     .summary = "write the skin of a held pose or of a moment of a clip as OBJ",
     .detail = "A pose is held until no vertex is faster than 0.1 mm/s for 0.25 s of simulated time; if that "
               "is not\n"

@@ -6,11 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A tracker's slip: one sample off by more than half the range while those beside it agree, all within a time in which no lid
- * closes and opens. The fastest movement of a face, a blink, takes 0.1 s or more. */
-#define SPIKE_HEIGHT 0.5
-#define SPIKE_FOOT 0.15
-#define SPIKE_SECONDS 0.07
+/* A tracker's slip: a sample that lies farther from the middle of those beside it than any part of a face can speed up, while
+ * they lie closer to each other than it does to them. Fastest is a lid; a way of 1 in T with the least jerk speeds up by up to
+ * 5.77 / T^2 (Flash and Hogan 1985), and T is 60 ms or more. */
+#define SPIKE_ACCELERATION (5.77 / (0.06 * 0.06)) /* 1/s^2, of the range */
+#define SPIKE_LEAST 0.12                          /* noise is no slip */
+#define SPIKE_SECONDS 0.07                        /* between the samples beside it */
 
 static uint32_t find(const ris_take_table *table, const char *name)
 {
@@ -98,9 +99,11 @@ static uint32_t take_out_spikes(const ris_take_table *table, uint32_t c)
     uint32_t count = 0;
     for (uint32_t i = 1; i + 1 < table->sample_count; i++) {
         const double a = (double)*at(table, i - 1, c), b = (double)*at(table, i + 1, c);
-        const double off = (double)*at(table, i, c) - 0.5 * (a + b);
-        if (table->time_s[i + 1] - table->time_s[i - 1] <= SPIKE_SECONDS &&
-            fabs(off) > SPIKE_HEIGHT * reach && fabs(a - b) < SPIKE_FOOT * reach) {
+        const double off = fabs((double)*at(table, i, c) - 0.5 * (a + b));
+        const double seconds = table->time_s[i + 1] - table->time_s[i - 1];
+        /* half a second difference: acceleration times half the square of the step */
+        const double most = fmax(SPIKE_ACCELERATION * seconds * seconds / 8, SPIKE_LEAST) * reach;
+        if (seconds <= SPIKE_SECONDS && off > most && fabs(a - b) < off) {
             *at(table, i, c) = (float)(0.5 * (a + b));
             count++;
         }

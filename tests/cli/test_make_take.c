@@ -55,7 +55,7 @@ static void same_bytes_everywhere(void **state)
     (void)state;
     const uint64_t hash = hash_of("--seconds 20 --seed 7");
     print_message("hash %016llx\n", (unsigned long long)hash);
-    assert_true(hash == UINT64_C(0x662648f60d7fddeb));
+    assert_true(hash == UINT64_C(0x85902007c989eeca));
     assert_true(hash == hash_of("--seconds 20 --seed 7"));
     assert_true(hash != hash_of("--seconds 20 --seed 8"));
 }

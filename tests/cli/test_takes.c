@@ -105,6 +105,28 @@ static void a_moment_is_exported(void **state)
     assert_true(command_exists(path));
 }
 
+/* Every viseme as an OBJ of its own, and the neutral head they are told apart from. */
+static void a_set_is_exported(void **state)
+{
+    char path[COMMAND_PATH_SIZE + 32];
+    (void)state;
+    snprintf(path, sizeof path, "%s/set", folder);
+    expect(2, "expected arkit, facs, visemes or expressions, found 'shapes'",
+           "export " HEAD "--set shapes -o '%s'", path);
+    expect(2, "makes its own poses", "export " HEAD "--set arkit --pose jaw.open=1 -o '%s'", path);
+    expect(0, NULL, "export " HEAD "--set visemes -o '%s'", path);
+    assert_int_equal(command_entries(path), 16);
+    snprintf(path, sizeof path, "%s/set/viseme.aa.obj", folder);
+    char *open = command_read_file(path);
+    snprintf(path, sizeof path, "%s/set/neutral.obj", folder);
+    char *neutral = command_read_file(path);
+    assert_non_null(open);
+    assert_non_null(neutral);
+    assert_true(strcmp(open, neutral) != 0);
+    free(open);
+    free(neutral);
+}
+
 /* The frames of a short take hold the bounds of a held pose; a bound that nothing holds breaks, and names its time. */
 static void frames_are_measured(void **state)
 {
@@ -142,6 +164,7 @@ int main(void)
         cmocka_unit_test(render_tells_the_speed),
         cmocka_unit_test(openface_tells_what_it_bridged),
         cmocka_unit_test(a_moment_is_exported),
+        cmocka_unit_test(a_set_is_exported),
         cmocka_unit_test(frames_are_measured),
     };
     return cmocka_run_group_tests(tests, make_takes, NULL);

@@ -178,6 +178,20 @@ static void leaps(void **state)
     ris__take_finish(&t.table);
 }
 
+/* 0.35 for one frame of a sixtieth is no face; of a thirtieth it is half a blink. */
+static void small_leaps(void **state)
+{
+    static const char *const rate[] = {"rate=60", "rate=30"};
+    (void)state;
+    for (uint32_t k = 0; k < 2; k++) {
+        read_take t;
+        read_fine(&t, RIS_TAKE_LIVE_LINK, rate[k],
+                  LL "jawOpen\n0:0:0:0,1,0.1\n0:0:0:1,1,0.45\n0:0:0:2,1,0.1\n0:0:0:3,1,0.2\n");
+        assert_int_equal(t.info.spikes, 1 - k);
+        ris__take_finish(&t.table);
+    }
+}
+
 static void ranges(void **state)
 {
     read_take t;
@@ -392,6 +406,7 @@ int main(void)
         cmocka_unit_test(midnight),
         cmocka_unit_test(lost_and_dropped),
         cmocka_unit_test(leaps),
+        cmocka_unit_test(small_leaps),
         cmocka_unit_test(ranges),
         cmocka_unit_test(head_angles),
         cmocka_unit_test(eyes_by_shapes_or_by_angles),

@@ -36,14 +36,14 @@ static void samples_are_met_on_time(void **state)
     (void)state;
     ris_clip *clip =
         clip_of(RIS_TAKE_LIVE_LINK,
-                LL "LeftEyeYaw,RightEyeYaw\n0:0:0:0,2,10,-5\n0:0:0:1,2,20,-5\n0:0:0:2,2,0,-7\n", &info);
+                LL "LeftEyeYaw,RightEyeYaw\n0:0:0:0,2,10,-5\n0:0:0:1,2,14,-5\n0:0:0:2,2,8,-7\n", &info);
     near(clip, 0, FAKE_YAW_L, 10, 1e-5);
-    near(clip, 1 / 60.0, FAKE_YAW_L, 20, 1e-5);
-    near(clip, 2 / 60.0, FAKE_YAW_L, 0, 1e-5);
+    near(clip, 1 / 60.0, FAKE_YAW_L, 14, 1e-5);
+    near(clip, 2 / 60.0, FAKE_YAW_L, 8, 1e-5);
     near(clip, 2 / 60.0, FAKE_YAW_R, -7, 1e-5);
     near(clip, 1, FAKE_YAW_R, -7, 1e-5); /* the ends hold */
     near(clip, -1, FAKE_YAW_L, 10, 1e-5);
-    near(clip, 0.5 / 60, FAKE_YAW_L, 15, 2.6); /* between its samples */
+    near(clip, 0.5 / 60, FAKE_YAW_L, 12, 1); /* between its samples */
     assert_true(fabs(ris_clip_duration_s(clip) - 2 / 60.0) < 1e-9);
     ris_clip_destroy(clip);
 }

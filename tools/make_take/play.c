@@ -218,13 +218,13 @@ static double share_of(const take_act *act, double time_s)
                                     : smooth(t / act->rise_s) * (1 - smooth(falling / act->fall_s));
 }
 
-/* Opposites: the weaker gives way, as no face does both. */
+/* Opposites: each gives way to the other, as no face does both. Without a corner, or the face would leap. */
 static void give_way(double *shape, const char *one, const char *other)
 {
     double *a = &shape[shape_index(one)], *b = &shape[shape_index(other)];
-    double *weaker = *a < *b ? a : b, *stronger = *a < *b ? b : a;
-    *weaker -= 0.7 * *stronger;
-    *weaker = *weaker < 0 ? 0 : *weaker;
+    const double had = *a;
+    *a *= 1 - 0.7 * *b;
+    *b *= 1 - 0.7 * had;
 }
 
 static void settle(double *shape)
