@@ -36,9 +36,9 @@ typedef struct ris_draw_store {
     ris_vk_buffer node; /* uploaded positions of a simulation elsewhere (UPLOAD) */
     ris_vk_buffer view; /* ris_draw_view (UPLOAD) */
     ris_vk_buffer term_start, term, ring_start, ring, ride;
-    ris_vk_buffer position, normal, rest, corner, index, line, cast;
-    ris_vk_image *texture; /* (texture_count + 1), the last one white */
-    ris_vk_image *detail;  /* beside each texture; without handle where there is none; the last one flat */
+    ris_vk_buffer position, normal, rest, squeeze, corner, index, line, cast;
+    ris_vk_image *texture;          /* (texture_count + 1), the last one white */
+    ris_vk_image *detail, *wrinkle; /* beside each; without handle where there is none; the last one flat */
     uint32_t texture_count;
     VkSampler sampler, shadow_sampler;
 } ris_draw_store;
@@ -53,7 +53,7 @@ struct ris_draw {
     ris_vk_sets compute_sets;
     ris_vk_sets *graphics_sets; /* one set per texture (store.texture_count + 1) */
     VkPipelineLayout compute_layout, graphics_layout;
-    VkPipeline refine, normal, ride;
+    VkPipeline refine, normal, squeeze, ride;
     VkPipeline pipe[RIS_DRAW_PIPE_COUNT];
     ris_vk_cmd cmd, copy;
     ris_draw_layers layers;
@@ -71,9 +71,9 @@ ris_result ris__draw_texture_load(ris_device *device, const char *path, VkFormat
 /* One pixel. */
 ris_result ris__draw_texture_plain(ris_device *device, const uint8_t rgba[4], VkFormat format,
                                    ris_vk_image *out, ris_error *err);
-/* The linear detail texture beside a colour texture: "<stem>_detail.png"; leaves *out zeroed where there is no such file. */
-ris_result ris__draw_texture_detail(ris_device *device, const char *color_path, ris_vk_image *out,
-                                    ris_error *err);
+/* A linear texture beside a colour texture: "<stem>_<kind>.png"; leaves *out zeroed where there is no such file. */
+ris_result ris__draw_texture_beside(ris_device *device, const char *color_path, const char *kind,
+                                    ris_vk_image *out, ris_error *err);
 /* target.c */
 ris_result ris__draw_target_create(ris_device *device, uint32_t width, uint32_t height, ris_draw_target *out,
                                    ris_error *err);
@@ -83,6 +83,8 @@ ris_result ris__draw_pipes_create(ris_draw *draw, ris_error *err);
 void ris__draw_pipes_finish(ris_draw *draw);
 /* A pipeline of the picture: mesh.vert, opaque, back faces culled. */
 ris_vk_graphics_def ris__draw_picture_def(const ris_draw *draw, ris_vk_code fragment, const char *name);
+/* The same with skin.vert, for the skin's own fragments. */
+ris_vk_graphics_def ris__draw_skin_def(const ris_draw *draw, ris_vk_code fragment, const char *name);
 /* view.c: fills what is the same for the whole frame */
 void ris__draw_view_fill(const ris_draw *draw, const ris_camera *camera, const float head[12],
                          ris_draw_view *out);

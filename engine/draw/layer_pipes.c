@@ -31,6 +31,8 @@ static ris_result create_set(ris_draw *draw, const ris_vk_buffer *const bound[RI
                             VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, store->sampler);
     ris_vk_sets_write_image(draw->device, out, 0, RIS_DRAW_BIND_DETAIL, store->detail[plain].view,
                             VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, store->sampler);
+    ris_vk_sets_write_image(draw->device, out, 0, RIS_DRAW_BIND_WRINKLE, store->wrinkle[plain].view,
+                            VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, store->sampler);
     ris_vk_sets_write_image(draw->device, out, 0, RIS_DRAW_BIND_SHADOW, draw->shadow.view,
                             VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, store->shadow_sampler);
     return RIS_OK;
@@ -40,16 +42,14 @@ ris_result ris__draw_layer_pipes_create(ris_draw *draw, ris_error *err)
 {
     ris_draw_layers *layers = &draw->layers;
     const ris_draw_store *store = &draw->store;
-    const ris_vk_buffer *inner[RIS_DRAW_BIND_COLOR] = {[RIS_DRAW_BIND_FRAME] = &store->view,
-                                                       [RIS_DRAW_BIND_AT] = &layers->position,
-                                                       [RIS_DRAW_BIND_FACING] = &layers->normal,
-                                                       [RIS_DRAW_BIND_REST] = &layers->rest,
-                                                       [RIS_DRAW_BIND_CORNER] = &layers->corner};
-    const ris_vk_buffer *strain[RIS_DRAW_BIND_COLOR] = {[RIS_DRAW_BIND_FRAME] = &store->view,
-                                                        [RIS_DRAW_BIND_AT] = &store->position,
-                                                        [RIS_DRAW_BIND_FACING] = &store->normal,
-                                                        [RIS_DRAW_BIND_REST] = &layers->strain,
-                                                        [RIS_DRAW_BIND_CORNER] = &store->corner};
+    const ris_vk_buffer *inner[RIS_DRAW_BIND_COLOR] = {
+        [RIS_DRAW_BIND_FRAME] = &store->view,     [RIS_DRAW_BIND_AT] = &layers->position,
+        [RIS_DRAW_BIND_FACING] = &layers->normal, [RIS_DRAW_BIND_REST] = &layers->rest,
+        [RIS_DRAW_BIND_CORNER] = &layers->corner, [RIS_DRAW_BIND_SQUEEZE] = &store->squeeze};
+    const ris_vk_buffer *strain[RIS_DRAW_BIND_COLOR] = {
+        [RIS_DRAW_BIND_FRAME] = &store->view,    [RIS_DRAW_BIND_AT] = &store->position,
+        [RIS_DRAW_BIND_FACING] = &store->normal, [RIS_DRAW_BIND_REST] = &layers->strain,
+        [RIS_DRAW_BIND_CORNER] = &store->corner, [RIS_DRAW_BIND_SQUEEZE] = &store->squeeze};
     ris_vk_graphics_def def[RIS_LAYER_PIPE_COUNT] = {
         [RIS_LAYER_PIPE_BONE] = ris__draw_picture_def(draw, RIS_VK_CODE(ris_spv_bone_frag), "draw bone"),
         [RIS_LAYER_PIPE_MUSCLE] =
@@ -58,7 +58,7 @@ ris_result ris__draw_layer_pipes_create(ris_draw *draw, ris_error *err)
         [RIS_LAYER_PIPE_DEPTH] =
             ris__draw_picture_def(draw, RIS_VK_CODE(ris_spv_clear_depth_frag), "draw clear depth"),
         [RIS_LAYER_PIPE_CLEAR] =
-            ris__draw_picture_def(draw, RIS_VK_CODE(ris_spv_skin_clear_frag), "draw clear skin"),
+            ris__draw_skin_def(draw, RIS_VK_CODE(ris_spv_skin_clear_frag), "draw clear skin"),
         [RIS_LAYER_PIPE_STRAIN] =
             ris__draw_picture_def(draw, RIS_VK_CODE(ris_spv_strain_frag), "draw strain"),
     };

@@ -13,6 +13,8 @@
 #include "draw/shadow_frag.h"
 #include "draw/shadow_vert.h"
 #include "draw/skin_frag.h"
+#include "draw/skin_squeeze_comp.h"
+#include "draw/skin_vert.h"
 #include "draw/surface_normal_comp.h"
 #include "draw/wire_frag.h"
 #include "draw/wire_vert.h"
@@ -34,7 +36,8 @@ static ris_result create_compute(ris_draw *draw, ris_error *err)
         [RIS_DRAW_BIND_NODE] = &store->node,     [RIS_DRAW_BIND_TERM_START] = &store->term_start,
         [RIS_DRAW_BIND_TERM] = &store->term,     [RIS_DRAW_BIND_POSITION] = &store->position,
         [RIS_DRAW_BIND_NORMAL] = &store->normal, [RIS_DRAW_BIND_RING_START] = &store->ring_start,
-        [RIS_DRAW_BIND_RING] = &store->ring,     [RIS_DRAW_BIND_RIDE] = &store->ride};
+        [RIS_DRAW_BIND_RING] = &store->ring,     [RIS_DRAW_BIND_RIDE] = &store->ride,
+        [RIS_DRAW_BIND_AT_REST] = &store->rest,  [RIS_DRAW_BIND_SQUEEZE_OUT] = &store->squeeze};
     for (uint32_t i = 0; i < RIS_DRAW_BIND_COMPUTE_COUNT; i++) {
         ris_vk_sets_write_buffer(device, &draw->compute_sets, 0, i, bound[i]->handle, 0, VK_WHOLE_SIZE);
     }
@@ -44,6 +47,8 @@ static ris_result create_compute(ris_draw *draw, ris_error *err)
                                   "draw refine", &draw->refine, err));
     RIS_TRY(ris_vk_compute_create(device, draw->compute_layout, RIS_VK_CODE(ris_spv_surface_normal_comp),
                                   "draw normal", &draw->normal, err));
+    RIS_TRY(ris_vk_compute_create(device, draw->compute_layout, RIS_VK_CODE(ris_spv_skin_squeeze_comp),
+                                  "draw squeeze", &draw->squeeze, err));
     RIS_TRY(ris_vk_compute_create(device, draw->compute_layout, RIS_VK_CODE(ris_spv_ride_comp), "draw ride",
                                   &draw->ride, err));
 fail:
@@ -56,11 +61,10 @@ static ris_result create_sets(ris_draw *draw, ris_error *err)
     ris_device *device = draw->device;
     const ris_draw_store *store = &draw->store;
     VkDescriptorType type[RIS_DRAW_BIND_GRAPHICS_COUNT];
-    const ris_vk_buffer *bound[RIS_DRAW_BIND_COLOR] = {[RIS_DRAW_BIND_FRAME] = &store->view,
-                                                       [RIS_DRAW_BIND_AT] = &store->position,
-                                                       [RIS_DRAW_BIND_FACING] = &store->normal,
-                                                       [RIS_DRAW_BIND_REST] = &store->rest,
-                                                       [RIS_DRAW_BIND_CORNER] = &store->corner};
+    const ris_vk_buffer *bound[RIS_DRAW_BIND_COLOR] = {
+        [RIS_DRAW_BIND_FRAME] = &store->view,    [RIS_DRAW_BIND_AT] = &store->position,
+        [RIS_DRAW_BIND_FACING] = &store->normal, [RIS_DRAW_BIND_REST] = &store->rest,
+        [RIS_DRAW_BIND_CORNER] = &store->corner, [RIS_DRAW_BIND_SQUEEZE] = &store->squeeze};
     ris_result result = RIS_OK;
     for (uint32_t i = 0; i < RIS_DRAW_BIND_GRAPHICS_COUNT; i++) {
         type[i] = i < RIS_DRAW_BIND_COLOR ? VK_DESCRIPTOR_TYPE_STORAGE_BUFFER
@@ -81,6 +85,9 @@ static ris_result create_sets(ris_draw *draw, ris_error *err)
                                 VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, store->sampler);
         uint32_t detail = store->detail[t].handle ? t : store->texture_count;
         ris_vk_sets_write_image(device, sets, 0, RIS_DRAW_BIND_DETAIL, store->detail[detail].view,
+                                VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, store->sampler);
+        uint32_t wrinkle = store->wrinkle[t].handle ? t : store->texture_count;
+        ris_vk_sets_write_image(device, sets, 0, RIS_DRAW_BIND_WRINKLE, store->wrinkle[wrinkle].view,
                                 VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, store->sampler);
         ris_vk_sets_write_image(device, sets, 0, RIS_DRAW_BIND_SHADOW, draw->shadow.view,
                                 VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, store->shadow_sampler);
@@ -105,6 +112,13 @@ ris_vk_graphics_def ris__draw_picture_def(const ris_draw *draw, ris_vk_code frag
                                  .name = name};
 }
 
+ris_vk_graphics_def ris__draw_skin_def(const ris_draw *draw, ris_vk_code fragment, const char *name)
+{
+    ris_vk_graphics_def def = ris__draw_picture_def(draw, fragment, name);
+    def.vertex = RIS_VK_CODE(ris_spv_skin_vert);
+    return def;
+}
+
 static ris_result create_graphics(ris_draw *draw, ris_error *err)
 {
     ris_vk_graphics_def def[RIS_DRAW_PIPE_COUNT];
@@ -117,7 +131,7 @@ static ris_result create_graphics(ris_draw *draw, ris_error *err)
     def[RIS_DRAW_PIPE_BACKGROUND].vertex = RIS_VK_CODE(ris_spv_background_vert);
     def[RIS_DRAW_PIPE_BACKGROUND].cull = VK_CULL_MODE_NONE;
     def[RIS_DRAW_PIPE_BACKGROUND].depth_test = def[RIS_DRAW_PIPE_BACKGROUND].depth_write = false;
-    def[RIS_DRAW_PIPE_SKIN] = ris__draw_picture_def(draw, RIS_VK_CODE(ris_spv_skin_frag), "draw skin");
+    def[RIS_DRAW_PIPE_SKIN] = ris__draw_skin_def(draw, RIS_VK_CODE(ris_spv_skin_frag), "draw skin");
     def[RIS_DRAW_PIPE_EYE] = ris__draw_picture_def(draw, RIS_VK_CODE(ris_spv_eye_frag), "draw eye");
     def[RIS_DRAW_PIPE_MOUTH] = ris__draw_picture_def(draw, RIS_VK_CODE(ris_spv_mouth_frag), "draw mouth");
     def[RIS_DRAW_PIPE_HAIR] = ris__draw_picture_def(draw, RIS_VK_CODE(ris_spv_hair_frag), "draw hair");
@@ -159,6 +173,7 @@ void ris__draw_pipes_finish(ris_draw *draw)
     }
     vkDestroyPipeline(device, draw->refine, NULL);
     vkDestroyPipeline(device, draw->normal, NULL);
+    vkDestroyPipeline(device, draw->squeeze, NULL);
     vkDestroyPipeline(device, draw->ride, NULL);
     vkDestroyPipelineLayout(device, draw->compute_layout, NULL);
     vkDestroyPipelineLayout(device, draw->graphics_layout, NULL);

@@ -18,10 +18,12 @@ static ris_result load_textures(ris_draw *draw, ris_error *err)
 {
     ris_draw_store *store = &draw->store;
     static const uint8_t white[4] = {255, 255, 255, 255}, flat[4] = {128, 110, 0, 255};
+    const uint8_t smooth[4] = {(uint8_t)(255.0 * RIS_DRAW_WRINKLE_FLAT + 0.5), 0, 0, 255};
     uint32_t count = draw->scene.texture_count;
     store->texture = calloc(count + 1, sizeof *store->texture);
     store->detail = calloc(count + 1, sizeof *store->detail);
-    if (store->texture == NULL || store->detail == NULL) {
+    store->wrinkle = calloc(count + 1, sizeof *store->wrinkle);
+    if (store->texture == NULL || store->detail == NULL || store->wrinkle == NULL) {
         return ris_fail(err, RIS_ERROR_MEMORY, "out of memory for %u textures", (unsigned)count);
     }
     store->texture_count = count;
@@ -30,17 +32,23 @@ static ris_result load_textures(ris_draw *draw, ris_error *err)
         ris_result result =
             ris__draw_texture_load(draw->device, path, VK_FORMAT_R8G8B8A8_UNORM, &store->texture[i], err);
         if (result == RIS_OK) {
-            result = ris__draw_texture_detail(draw->device, path, &store->detail[i], err);
+            result = ris__draw_texture_beside(draw->device, path, "detail", &store->detail[i], err);
+        }
+        if (result == RIS_OK) {
+            result = ris__draw_texture_beside(draw->device, path, "wrinkles", &store->wrinkle[i], err);
         }
         if (result != RIS_OK) {
             return result;
         }
     }
-    ris_result result =
-        ris__draw_texture_plain(draw->device, white, VK_FORMAT_R8G8B8A8_UNORM, &store->texture[count], err);
-    return result != RIS_OK ? result
-                            : ris__draw_texture_plain(draw->device, flat, VK_FORMAT_R8G8B8A8_UNORM,
-                                                      &store->detail[count], err);
+    const VkFormat format = VK_FORMAT_R8G8B8A8_UNORM;
+    ris_result result = ris__draw_texture_plain(draw->device, white, format, &store->texture[count], err);
+    if (result == RIS_OK) {
+        result = ris__draw_texture_plain(draw->device, flat, format, &store->detail[count], err);
+    }
+    return result != RIS_OK
+               ? result
+               : ris__draw_texture_plain(draw->device, smooth, format, &store->wrinkle[count], err);
 }
 
 static ris_result create_shadow_sampler(ris_draw *draw, ris_error *err)
@@ -93,6 +101,8 @@ ris_result ris__draw_store_create(ris_draw *draw, ris_error *err)
     RIS_TRY(fill(device, "draw positions", scene->position, vertices * 16, data, &store->position, err));
     RIS_TRY(fill(device, "draw normals", scene->normal, vertices * 16, data, &store->normal, err));
     RIS_TRY(fill(device, "draw rest", scene->rest, vertices * 16, data, &store->rest, err));
+    RIS_TRY(ris_vk_buffer_create(device, RIS_VK_DEVICE, (skin + 1) * sizeof(ris_draw_squeeze), data,
+                                 "draw squeeze", &store->squeeze, err));
     RIS_TRY(fill(device, "draw corners", scene->corner, scene->corner_count * sizeof *scene->corner, data,
                  &store->corner, err));
     RIS_TRY(fill(device, "draw triangles", scene->index, (size_t)scene->index_count * 4, index, &store->index,
@@ -114,17 +124,20 @@ void ris__draw_store_finish(ris_draw *draw)
     ris_draw_store *store = &draw->store;
     ris_vk_buffer *all[] = {&store->node,       &store->view, &store->term_start, &store->term,
                             &store->ring_start, &store->ring, &store->ride,       &store->position,
-                            &store->normal,     &store->rest, &store->corner,     &store->index,
-                            &store->line,       &store->cast};
+                            &store->normal,     &store->rest, &store->squeeze,    &store->corner,
+                            &store->index,      &store->line, &store->cast};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
         ris_vk_buffer_finish(device, all[i]);
     }
-    for (uint32_t i = 0; store->texture != NULL && store->detail != NULL && i <= store->texture_count; i++) {
+    const bool textures = store->texture != NULL && store->detail != NULL && store->wrinkle != NULL;
+    for (uint32_t i = 0; textures && i <= store->texture_count; i++) {
         ris_vk_image_finish(device, &store->texture[i]);
         ris_vk_image_finish(device, &store->detail[i]);
+        ris_vk_image_finish(device, &store->wrinkle[i]);
     }
     free(store->texture);
     free(store->detail);
+    free(store->wrinkle);
     vkDestroySampler(device->handle, store->sampler, NULL);
     vkDestroySampler(device->handle, store->shadow_sampler, NULL);
     ris_vk_image_finish(device, &draw->shadow);

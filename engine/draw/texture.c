@@ -29,13 +29,13 @@ ris_result ris__draw_texture_plain(ris_device *device, const uint8_t rgba[4], Vk
     return upload(device, "plain", rgba, 1, 1, format, out, err);
 }
 
-ris_result ris__draw_texture_detail(ris_device *device, const char *color_path, ris_vk_image *out,
-                                    ris_error *err)
+ris_result ris__draw_texture_beside(ris_device *device, const char *color_path, const char *kind,
+                                    ris_vk_image *out, ris_error *err)
 {
     char path[RIS_PATH_SIZE];
     const char *dot = strrchr(color_path, '.');
     int stem = dot != NULL ? (int)(dot - color_path) : (int)strlen(color_path);
-    int wrote = snprintf(path, sizeof path, "%.*s_detail.png", stem, color_path);
+    int wrote = snprintf(path, sizeof path, "%.*s_%s.png", stem, color_path, kind);
     if (wrote < 0 || (size_t)wrote >= sizeof path || access(path, F_OK) != 0) {
         return RIS_OK;
     }

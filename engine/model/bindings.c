@@ -244,11 +244,12 @@ static ris_result bind_blended(binder *b, uint32_t m, uint32_t node, ris_error *
         weight *= f_smoothstep(b->corner_mm[node] / CORNER_MM);
     }
     if (muscle->kind == RIS_MUSCLE_LINEAR) {
-        float start = muscle->insertion_start;
+        const float start = muscle->insertion_start, held = muscle->def->held_at;
+        const float from_held = along >= held ? (along - held) / (1.0f - held) : (held - along) / held;
         /* a muscle of the face does not move the lining of the mouth behind it */
         weight *= f_clamp(0.5f + above / ABOVE_FULL, 0.0f, 1.0f);
         if (muscle->def->end_bone == RIS_BONE_AUTO) {
-            weight *= f_smoothstep(muscle->gain * (along - start) / f_max(1.0f - start, 1e-3f));
+            weight *= f_smoothstep(muscle->gain * (from_held - start) / f_max(1.0f - start, 1e-3f));
         } else {
             const float over = list[0].depth - 0.5f * model->segment[list[0].segment].size.y;
             weight *=

@@ -14,6 +14,11 @@
 
 void ris__contract_linear(const ris_vec3 *p, uint32_t n, float c, ris_vec3 *q)
 {
+    ris__contract_about(p, n, c, 0.0f, q);
+}
+
+void ris__contract_about(const ris_vec3 *p, uint32_t n, float c, float held_at, ris_vec3 *q)
+{
     if (!(c > 0.0f)) {
         memcpy(q, p, n * sizeof *q);
         return;
@@ -23,10 +28,11 @@ void ris__contract_linear(const ris_vec3 *p, uint32_t n, float c, ris_vec3 *q)
         total += v3_distance(p[i], p[i - 1]);
     }
     q[0] = p[0];
+    const float held = held_at * total;
     float own = 0.0f; /* length up to point i */
-    for (uint32_t i = 1; i < n; ++i) {
-        own += v3_distance(p[i], p[i - 1]);
-        const float wanted = f_max((1.0f - c) * own, SMALLEST_PARAMETER * total);
+    for (uint32_t i = held > 0.0f ? 0 : 1; i < n; ++i) {
+        own += i > 0 ? v3_distance(p[i], p[i - 1]) : 0.0f;
+        const float wanted = f_max(held + (1.0f - c) * (own - held), SMALLEST_PARAMETER * total);
         /* the segment k, k + 1 that holds the wanted length: a <= wanted <= b */
         uint32_t k = 0;
         float a = 0.0f, b = v3_distance(p[1], p[0]);
@@ -168,7 +174,8 @@ void ris__muscle_contract(ris_rig *rig, const float *pose)
             const uint32_t first = model->fiber[muscle->first_fiber + f].first_point;
             if (!sphincter) { /* between bones, these alone decide the length */
                 const float shorter = muscle->def->end_bone == RIS_BONE_AUTO ? c : 0.0f;
-                ris__contract_linear(rig->p + first, muscle->point_count, shorter, rig->q + first);
+                ris__contract_about(rig->p + first, muscle->point_count, shorter, muscle->def->held_at,
+                                    rig->q + first);
                 continue;
             }
             for (uint32_t i = 0; i < muscle->point_count; ++i) {

@@ -179,6 +179,8 @@ ris_vec3 ris__rigid_rotate(const ris_rigid *rigid, ris_vec3 v);
 void ris__rigid_matrix(const ris_rigid *rigid, float out[12]);
 /* KA-31. n points of a fibre at rest, contraction c, result q (n). */
 void ris__contract_linear(const ris_vec3 *p, uint32_t n, float c, ris_vec3 *q);
+/* The same towards the point at the share held_at of the length: both ends of the fibre move. */
+void ris__contract_about(const ris_vec3 *p, uint32_t n, float c, float held_at, ris_vec3 *q);
 /* KA-32. Point p of fibre j of f (0 outermost), axis a0-a1, position a on it. */
 ris_vec3 ris__contract_sphincter(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, float a, uint32_t j, uint32_t f,
                                  float c);

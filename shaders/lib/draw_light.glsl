@@ -1,6 +1,7 @@
 // Lighting shared by the materials: three lamps, soft ambient, the key lamp's shadow, tone curve. Linear space throughout.
 layout(binding = RIS_DRAW_BIND_COLOR) uniform sampler2D color_texture;
 layout(binding = RIS_DRAW_BIND_DETAIL) uniform sampler2D detail_texture;
+layout(binding = RIS_DRAW_BIND_WRINKLE) uniform sampler2D wrinkle_texture;
 layout(binding = RIS_DRAW_BIND_SHADOW) uniform sampler2D shadow_texture;
 
 // share of the key lamp that reaches a point: sixteen soft-edged depth comparisons

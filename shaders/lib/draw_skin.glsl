@@ -2,7 +2,26 @@ layout(location = 0) in vec3 in_world;
 layout(location = 1) in vec3 in_normal;
 layout(location = 2) in vec2 in_uv;
 layout(location = 3) in vec4 in_rest;
+layout(location = 4) in vec3 in_squeeze_own;
+layout(location = 5) in vec3 in_squeeze_mixed;
 layout(location = 0) out vec4 out_color;
+
+const float wrinkle_mm = 3.2;                   // between black and white of the wrinkle texture, fully squeezed
+const float fold_from = 0.03, fold_full = 0.30; // shares by which the skin is shorter
+
+// how far skin that is shorter by a share has folded
+float folded(float shorter)
+{
+    return smoothstep(fold_from, fold_full, shorter);
+}
+
+// share by which the skin is shorter now along a direction (world, any length)
+float shorter_along(vec3 direction)
+{
+    vec3 g = direction.x * object.place[0].xyz + direction.y * object.place[1].xyz + direction.z * object.place[2].xyz;
+    float square = dot(in_squeeze_own, g * g) + 2.0 * dot(in_squeeze_mixed, g * g.yzx), own = dot(g, g);
+    return own > 0.0 ? 1.0 - sqrt(own / max(square, 1e-3 * own)) : 0.0;
+}
 
 // Colour of the skin: light that bleeds into the shadow edge (red farthest), two specular lobes broken up by pores,
 // ambient that keeps red in the creases.
@@ -18,8 +37,19 @@ vec3 skin_color()
     vec3 across_x = cross(along_y, smooth_n), across_y = cross(smooth_n, along_x);
     float area = dot(along_x, across_x);
     vec3 slope = object.pivot.w * sign(area) * (dFdx(detail.r) * across_x + dFdy(detail.r) * across_y);
-    vec3 n = normalize(abs(area) * smooth_n - slope);
-    vec3 soft = normalize(mix(smooth_n, n, 0.4));
+
+    // wrinkles: furrows open where the skin is squeezed across them
+    float height = texture(wrinkle_texture, in_uv).r;
+    vec3 across_fold = sign(area) * (dFdx(height) * across_x + dFdy(height) * across_y);
+    float fold = folded(shorter_along(across_fold));
+    vec3 fold_slope = wrinkle_mm * fold * across_fold;
+    // at the bottom of a furrow the slope has no direction: the sum of both
+    float squeezed = folded(1.0 - inversesqrt(max(in_squeeze_own.x + in_squeeze_own.y + in_squeeze_own.z - 1.0, 1.0)));
+    float furrow = squeezed * clamp((RIS_DRAW_WRINKLE_FLAT - height) / 0.6, 0.0, 1.0);
+    ao *= 1.0 - 0.4 * furrow;
+
+    vec3 n = normalize(abs(area) * smooth_n - slope - fold_slope);
+    vec3 soft = normalize(mix(normalize(abs(area) * smooth_n - 0.8 * fold_slope), n, 0.4));
 
     float rough = 0.72 - 0.45 * detail.g;
     float thin = detail.b;

@@ -22,7 +22,7 @@
 #define RIS_DRAW_GROUP 64
 #define RIS_DRAW_STRAIN_FULL 0.4 /* RIS_STRAIN_FULL of risorius/draw.h */
 
-/* Set 0 of refine.comp, surface_normal.comp and ride.comp; all storage buffers. "Surface" vertices are what is drawn: the
+/* Set 0 of refine.comp, surface_normal.comp, skin_squeeze.comp and ride.comp; all storage buffers. "Surface" vertices are what is drawn: the
  * refined skin first, then the parts. */
 #define RIS_DRAW_BIND_NODE 0       /* vec4 (node_count): simulated positions, mm */
 #define RIS_DRAW_BIND_TERM_START 1 /* uint (skin surface vertices + 1) */
@@ -32,7 +32,9 @@
 #define RIS_DRAW_BIND_RING_START 5 /* uint (skin surface vertices + 1) */
 #define RIS_DRAW_BIND_RING 6       /* uint pairs: next and previous vertex of each face around a vertex */
 #define RIS_DRAW_BIND_RIDE 7       /* ris_draw_ride */
-#define RIS_DRAW_BIND_COMPUTE_COUNT 8
+#define RIS_DRAW_BIND_AT_REST 8    /* vec4 (surface vertices): as RIS_DRAW_BIND_REST */
+#define RIS_DRAW_BIND_SQUEEZE_OUT 9 /* ris_draw_squeeze (skin surface vertices) */
+#define RIS_DRAW_BIND_COMPUTE_COUNT 10
 
 /* Set 0 of the graphics stages. */
 #define RIS_DRAW_BIND_FRAME 0  /* ris_draw_view */
@@ -41,10 +43,23 @@
 #define RIS_DRAW_BIND_REST                                                                                   \
     3 /* vec4 (surface vertices): position at rest, w = visible share of the surroundings */
 #define RIS_DRAW_BIND_CORNER 4 /* ris_draw_corner */
-#define RIS_DRAW_BIND_COLOR 5  /* texture, sRGB */
-#define RIS_DRAW_BIND_DETAIL 6 /* texture beside it, linear: R height (0.5 = mean), G oil, B thinness */
-#define RIS_DRAW_BIND_SHADOW 7 /* depth picture from the key light */
-#define RIS_DRAW_BIND_GRAPHICS_COUNT 8
+#define RIS_DRAW_BIND_SQUEEZE 5 /* ris_draw_squeeze (skin surface vertices) */
+#define RIS_DRAW_BIND_COLOR 6   /* texture, sRGB; the buffers come before it */
+#define RIS_DRAW_BIND_DETAIL 7  /* texture beside it, linear: R height (0.5 = mean), G oil, B thinness */
+#define RIS_DRAW_BIND_WRINKLE 8 /* texture beside it, linear: R height of fully squeezed skin */
+#define RIS_DRAW_BIND_SHADOW 9  /* depth picture from the key light */
+#define RIS_DRAW_BIND_GRAPHICS_COUNT 10
+
+#define RIS_DRAW_WRINKLE_FLAT 0.75 /* height where the skin does not fold */
+
+/* How the skin is squeezed at a vertex (skin_squeeze.comp): the symmetric M with g . M g = 1 / stretch^2 along the unit
+ * direction g. */
+RIS_DRAW_STRUCT(ris_draw_squeeze)
+{
+    ris_draw_v4 own;   /* xx, yy, zz, - */
+    ris_draw_v4 mixed; /* xy, yz, zx, - */
+}
+RIS_DRAW_STRUCT_END(ris_draw_squeeze);
 
 /* One node's share of a surface vertex. */
 RIS_DRAW_STRUCT(ris_draw_term)

@@ -238,6 +238,51 @@ static void layers_leave_no_trace(void **state)
     ris_draw_destroy(draw);
 }
 
+/* Mean second difference of brightness down the forehead, 0..255: what lines across it make. */
+static float lines_on_the_forehead(ris_draw *draw, const char *pose, int width, int height, uint8_t *pixels)
+{
+    ris_sim *sim = hold(head, pose, device);
+    picture(draw, sim, "front", pixels);
+    ris_sim_destroy(sim);
+    float sum = 0, count = 0;
+    const int across = height / 8, step = height / 180;
+    for (int y = height * 25 / 100; y < height * 30 / 100; y++) {
+        for (int x = width / 2 - across; x < width / 2 + across; x++) {
+            const uint8_t *p = pixels + 4 * ((size_t)y * (size_t)width + (size_t)x) + 1;
+            const int down = 4 * step * width;
+            sum += (float)abs(p[-down] - 2 * p[0] + p[down]);
+            count += 1;
+        }
+    }
+    return sum / count;
+}
+
+/* Lines open where the skin is squeezed across them, and stay shut where it is stretched or squeezed along them. */
+static void wrinkles_open_across_the_squeeze(void **state)
+{
+    (void)state;
+    enum { W = 320, H = 360 };
+    ris_error err = {0};
+    ris_draw *draw = open_draw(head);
+    uint8_t *pixels = malloc((size_t)W * H * 4);
+    assert_non_null(pixels);
+    GOOD(ris_draw_resize(draw, W, H, &err));
+    const float rest = lines_on_the_forehead(draw, "", W, H, pixels);
+    const float raised =
+        lines_on_the_forehead(draw, "frontalis_inner=1,frontalis_middle=1,frontalis_outer=1", W, H, pixels);
+    const float half = lines_on_the_forehead(
+        draw, "frontalis_inner=0.5,frontalis_middle=0.5,frontalis_outer=0.5", W, H, pixels);
+    const float lowered =
+        lines_on_the_forehead(draw, "depressor_supercilii=1,corrugator_supercilii=1", W, H, pixels);
+    print_message("lines on the forehead: rest %.2f, half %.2f, raised %.2f, lowered %.2f\n", (double)rest,
+                  (double)half, (double)raised, (double)lowered);
+    assert_true(raised > 1.8f * rest);
+    assert_true(half > rest && half < raised);
+    assert_true(lowered < 1.25f * rest);
+    free(pixels);
+    ris_draw_destroy(draw);
+}
+
 static void resize_and_repeat(void **state)
 {
     (void)state;
@@ -273,6 +318,7 @@ int main(void)
         cmocka_unit_test(in_place_equals_uploaded),
         cmocka_unit_test(the_map_is_the_picture),
         cmocka_unit_test(layers_leave_no_trace),
+        cmocka_unit_test(wrinkles_open_across_the_squeeze),
         cmocka_unit_test(resize_and_repeat),
     };
     ris_error err = {0};

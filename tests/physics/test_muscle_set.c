@@ -206,7 +206,8 @@ static void muscles_do_what_they_are_named_for(void **state)
     } cases[] = {
         {"frontalis_outer.L", {48, 40, 77}, {0, 1, 0}},
         {"frontalis_middle.L", {34, 43, 87}, {0, 1, 0}},
-        {"procerus", {0, 35, 97}, {0, -1, 0}},
+        {"procerus", {0, 26, 95}, {0, -1, 0}},
+        {"procerus", {0, 8, 98}, {0, 1, 0}},
         {"levator_labii_superioris_alaeque_nasi.L", {17, -27, 93}, {0, 1, 0}},
         {"levator_labii_superioris.L", {17, -38, 96}, {0, 1, 0}},
         {"zygomaticus_minor.L", {21, -37, 92}, {0.5f, 0.8f, -0.2f}},

@@ -63,6 +63,11 @@ static void linear_contraction(void **state) /* KA-31 */
     assert_point(q[2], 1, 0.5f, 0, 1e-6f);
     assert_point(q[3], 1, 1.25f, 0, 1e-6f);
     assert_near(polyline(q, 4), 2.0590, 1e-4);
+    ris__contract_about(bent, 4, 0.5f, 1.0f / 3.0f, q); /* held at the second point: both ends move */
+    assert_point(q[0], 0.5f, 0, 0, 1e-6f);
+    assert_point(q[1], 1, 0, 0, 1e-6f);
+    assert_point(q[2], 1, 0.5f, 0, 1e-6f);
+    assert_point(q[3], 1, 1, 0, 1e-6f);
     ris__contract_linear(bent, 4, 0.9f, q);
     assert_near(polyline(q, 4), 0.3, 1e-6);
     ris__contract_linear(bent, 4, 0.0f, q);

@@ -14,7 +14,7 @@
 typedef struct fixture {
     ris_mesh mesh;
     ris_paint_surface surface;
-    ris_paint_image color, detail;
+    ris_paint_skin_images images;
 } fixture;
 
 static void paint(fixture *f)
@@ -23,13 +23,12 @@ static void paint(fixture *f)
     *f = (fixture){0};
     assert_int_equal(ris_mesh_load_obj(RIS_SOURCE_DIR "/assets/human/skin.obj", &f->mesh, &err), RIS_OK);
     assert_int_equal(ris_paint_surface_init(&f->surface, &f->mesh, NULL, 0, NULL, 0, &err), RIS_OK);
-    assert_int_equal(ris_paint_atlas(&f->surface, SIZE, &f->color, &f->detail, &err), RIS_OK);
+    assert_int_equal(ris_paint_atlas(&f->surface, SIZE, &f->images, &err), RIS_OK);
 }
 
 static void finish(fixture *f)
 {
-    ris_paint_image_finish(&f->color);
-    ris_paint_image_finish(&f->detail);
+    ris_paint_skin_images_finish(&f->images);
     ris_paint_surface_finish(&f->surface);
     ris_mesh_finish(&f->mesh);
 }
@@ -56,10 +55,11 @@ static void test_same_bytes_twice(void **state)
     fixture again;
     paint(&again);
     const size_t bytes = (size_t)SIZE * SIZE * 3;
-    assert_memory_equal(f->color.rgb, again.color.rgb, bytes);
-    assert_memory_equal(f->detail.rgb, again.detail.rgb, bytes);
+    assert_memory_equal(f->images.color.rgb, again.images.color.rgb, bytes);
+    assert_memory_equal(f->images.detail.rgb, again.images.detail.rgb, bytes);
+    assert_memory_equal(f->images.wrinkles.rgb, again.images.wrinkles.rgb, bytes);
     /* control: the two maps are not the same picture, so equality means something */
-    assert_memory_not_equal(f->color.rgb, f->detail.rgb, bytes);
+    assert_memory_not_equal(f->images.color.rgb, f->images.detail.rgb, bytes);
     finish(&again);
 }
 
@@ -85,7 +85,7 @@ static uint32_t count_holes(const fixture *f)
                                        (y[n] - y[k]) * ((float)column + 0.5f - x[k]);
                     inside += side > 0 ? 1 : side < 0 ? -1 : 0;
                 }
-                holes += abs(inside) == 3 && f->color.covered[row * SIZE + column] != 1 ? 1 : 0;
+                holes += abs(inside) == 3 && f->images.color.covered[row * SIZE + column] != 1 ? 1 : 0;
             }
         }
     }
@@ -97,21 +97,57 @@ static void test_islands_are_full(void **state)
     fixture *f = *state;
     uint32_t painted = 0, spread = 0, middle = 0;
     for (uint32_t i = 0; i < SIZE * SIZE; i++) {
-        painted += f->color.covered[i] == 1 ? 1 : 0;
-        spread += f->color.covered[i] == 2 ? 1 : 0;
+        painted += f->images.color.covered[i] == 1 ? 1 : 0;
+        spread += f->images.color.covered[i] == 2 ? 1 : 0;
     }
     assert_in_range(painted, SIZE * SIZE / 10, SIZE * SIZE);
     assert_true(spread > 500); /* colour goes on beyond the seams */
     assert_int_equal(count_holes(f), 0);
     /* control: a texel taken away well inside an island is noticed */
     for (uint32_t i = SIZE + 1; i + SIZE + 1 < SIZE * SIZE && !middle; i++)
-        if (f->color.covered[i] == 1 && f->color.covered[i - 1] == 1 && f->color.covered[i + 1] == 1 &&
-            f->color.covered[i - SIZE] == 1 && f->color.covered[i + SIZE] == 1)
+        if (f->images.color.covered[i] == 1 && f->images.color.covered[i - 1] == 1 &&
+            f->images.color.covered[i + 1] == 1 && f->images.color.covered[i - SIZE] == 1 &&
+            f->images.color.covered[i + SIZE] == 1)
             middle = i;
     assert_true(middle > 0);
-    f->color.covered[middle] = 0;
+    f->images.color.covered[middle] = 0;
     assert_true(count_holes(f) > 0);
-    f->color.covered[middle] = 1;
+    f->images.color.covered[middle] = 1;
+}
+
+/* Height of squeezed skin at a place on the front of the face. */
+static float wrinkle_at(const fixture *f, float x, float y)
+{
+    ris_paint_site site = {
+        .shell = RIS_SHELL_FACE, .lip = RIS_PAINT_RING_MAX, .lid = RIS_PAINT_RING_MAX, .occlusion = 1};
+    site.p = (ris_vec3){x, y, -1000};
+    for (uint32_t i = 0; i < f->mesh.vertex_count; i++) {
+        const ris_vec3 v = f->mesh.position[i];
+        if (fabsf(v.x - x) < 8 && fabsf(v.y - y) < 8 && v.z > site.p.z)
+            site.p.z = v.z;
+    }
+    const ris_paint_zones zones = ris_paint_find_zones(&f->surface, &site);
+    return ris_paint_wrinkles(&f->surface, &site, &zones);
+}
+
+/* Furrows down a column of the forehead, none above the hairline or in the mouth. */
+static void test_wrinkles(void **state)
+{
+    const fixture *f = *state;
+    uint32_t furrows = 0;
+    float before = RIS_PAINT_SMOOTH;
+    for (float y = 45; y < 80; y += 0.5f) {
+        const float h = wrinkle_at(f, 20, y);
+        assert_true(h >= 0 && h <= 1);
+        furrows += h < 0.45f && before >= 0.45f;
+        before = h;
+    }
+    assert_in_range(furrows, 3, 5);
+    for (float x = -30; x < 30; x += 0.5f)
+        assert_true(fabsf(wrinkle_at(f, x, 112) - RIS_PAINT_SMOOTH) < 0.02f);
+    const ris_paint_site mouth = {.shell = RIS_SHELL_MOUTH, .p = {20, 57, 80}};
+    const ris_paint_zones zones = {0};
+    assert_true(ris_paint_wrinkles(&f->surface, &mouth, &zones) == RIS_PAINT_SMOOTH);
 }
 
 typedef enum place { LIPS, CHEEK, FOREHEAD, SCALP, PLACES } place;
@@ -138,7 +174,7 @@ static void measure(const fixture *f, float mean[PLACES][3])
         const uint32_t x = (uint32_t)(u * SIZE), y = (uint32_t)((1 - v) * SIZE);
         for (int p = 0; p < PLACES; p++) {
             for (int k = 0; k < 3 && in[p]; k++)
-                mean[p][k] += ris_paint_decode((float)f->color.rgb[3 * (y * SIZE + x) + (uint32_t)k]);
+                mean[p][k] += ris_paint_decode((float)f->images.color.rgb[3 * (y * SIZE + x) + (uint32_t)k]);
             count[p] += in[p] ? 1 : 0;
         }
     }
@@ -203,7 +239,8 @@ static void test_refusals(void **state)
                  "mouth");
     err = (ris_error){0};
     const char *nowhere = RIS_BUILD_DIR "/no-such-folder/skin.png";
-    expect_error(&err, ris_paint_image_save(&f->color, nowhere, &err), RIS_ERROR_FAILED, "no-such-folder");
+    expect_error(&err, ris_paint_image_save(&f->images.color, nowhere, &err), RIS_ERROR_FAILED,
+                 "no-such-folder");
 }
 
 int main(void)
@@ -211,7 +248,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_same_bytes_twice), cmocka_unit_test(test_islands_are_full),
         cmocka_unit_test(test_colors_of_a_face), cmocka_unit_test(test_eye),
-        cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_wrinkles),         cmocka_unit_test(test_refusals),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

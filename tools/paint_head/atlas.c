@@ -37,8 +37,13 @@ static float brow_at(const ris_paint_surface *surface, ris_vec3 p)
     return 1 - expf(-sum / half_dense);
 }
 
-static void paint_texel(const ris_paint_surface *surface, uint32_t triangle, const float w[3], uint8_t *color,
-                        uint8_t *detail)
+static uint8_t linear_byte(float value)
+{
+    return (uint8_t)(255 * ris_paint_clamp(value, 0, 1) + 0.5f);
+}
+
+static void paint_texel(const ris_paint_surface *surface, uint32_t triangle, const float w[3],
+                        ris_paint_skin_images *images, size_t at)
 {
     const uint32_t *t = &surface->triangle[3 * triangle];
     ris_paint_site site = {.shell = surface->shell[triangle]};
@@ -52,15 +57,15 @@ static void paint_texel(const ris_paint_surface *surface, uint32_t triangle, con
     site.brow = brow_at(surface, site.p);
     const ris_paint_texel texel = ris_paint_skin(surface, &site);
     for (int k = 0; k < 3; k++) {
-        color[k] = ris_paint_encode(texel.color[k]);
-        detail[k] = (uint8_t)(255 * ris_paint_clamp(texel.detail[k], 0, 1) + 0.5f);
+        images->color.rgb[3 * at + (size_t)k] = ris_paint_encode(texel.color[k]);
+        images->detail.rgb[3 * at + (size_t)k] = linear_byte(texel.detail[k]);
+        images->wrinkles.rgb[3 * at + (size_t)k] = linear_byte(texel.wrinkle);
     }
 }
 
-static void paint_triangle(const ris_paint_surface *surface, uint32_t triangle, ris_paint_image *color,
-                           ris_paint_image *detail)
+static void paint_triangle(const ris_paint_surface *surface, uint32_t triangle, ris_paint_skin_images *images)
 {
-    const float size = (float)color->width;
+    const float size = (float)images->color.width;
     float x[3], y[3];
     for (int k = 0; k < 3; k++) {
         const float *uv = &surface->mesh->uv[2 * surface->triangle_uv[3 * triangle + (uint32_t)k]];
@@ -82,11 +87,11 @@ static void paint_triangle(const ris_paint_surface *surface, uint32_t triangle, 
             w[0] = ((x[1] - px) * (y[2] - py) - (x[2] - px) * (y[1] - py)) / area;
             w[1] = ((x[2] - px) * (y[0] - py) - (x[0] - px) * (y[2] - py)) / area;
             w[2] = 1 - w[0] - w[1];
-            const size_t at = (size_t)j * color->width + (size_t)i;
-            if (w[0] < slack || w[1] < slack || w[2] < slack || color->covered[at])
+            const size_t at = (size_t)j * images->color.width + (size_t)i;
+            if (w[0] < slack || w[1] < slack || w[2] < slack || images->color.covered[at])
                 continue;
-            color->covered[at] = detail->covered[at] = 1;
-            paint_texel(surface, triangle, w, &color->rgb[3 * at], &detail->rgb[3 * at]);
+            images->color.covered[at] = images->detail.covered[at] = images->wrinkles.covered[at] = 1;
+            paint_texel(surface, triangle, w, images, at);
         }
     }
 }
@@ -136,20 +141,28 @@ static void spread(ris_paint_image *image)
             image->rgb[3 * i + (size_t)c] = (uint8_t)(sum[c] / count);
 }
 
-ris_result ris_paint_atlas(const ris_paint_surface *surface, uint32_t size, ris_paint_image *color,
-                           ris_paint_image *detail, ris_error *err)
+void ris_paint_skin_images_finish(ris_paint_skin_images *images)
 {
-    *color = *detail = (ris_paint_image){0};
-    ris_result result = ris_paint_image_init(color, size, size, err);
-    if (!result)
-        result = ris_paint_image_init(detail, size, size, err);
+    ris_paint_image_finish(&images->color);
+    ris_paint_image_finish(&images->detail);
+    ris_paint_image_finish(&images->wrinkles);
+}
+
+ris_result ris_paint_atlas(const ris_paint_surface *surface, uint32_t size, ris_paint_skin_images *out,
+                           ris_error *err)
+{
+    *out = (ris_paint_skin_images){0};
+    ris_paint_image *const all[] = {&out->color, &out->detail, &out->wrinkles};
+    ris_result result = RIS_OK;
+    for (int k = 0; k < 3 && !result; k++)
+        result = ris_paint_image_init(all[k], size, size, err);
     if (result) {
-        ris_paint_image_finish(color);
+        ris_paint_skin_images_finish(out);
         return result;
     }
     for (uint32_t i = 0; i < surface->triangle_count; i++)
-        paint_triangle(surface, i, color, detail);
-    spread(color);
-    spread(detail);
+        paint_triangle(surface, i, out);
+    for (int k = 0; k < 3; k++)
+        spread(all[k]);
     return RIS_OK;
 }

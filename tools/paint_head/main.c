@@ -11,9 +11,9 @@
 
 static const char usage[] =
     "Usage: risorius-paint-head HEAD [--size N] [--eye-size N] [--iris MM] [--ball MM] [--pupil MM]\n"
-    "Paints skin.png, skin_detail.png, eye.png, teeth.png, gum.png and tongue.png into the folder HEAD from "
-    "its\n"
-    "skin.obj and, where head.json names them, eyes and brows. N: 64..8192 (2048; eye 1024).\n";
+    "Paints skin.png, skin_detail.png, skin_wrinkles.png, eye.png, teeth.png, gum.png and tongue.png into\n"
+    "the folder HEAD from its skin.obj and, where head.json names them, eyes and brows. N: 64..8192 (2048; "
+    "eye 1024).\n";
 
 typedef struct options {
     const char *head;
@@ -128,19 +128,19 @@ static ris_result paint_skin(const options *opt, ris_error *err)
     parts all = {0};
     ris_mesh mesh = {0};
     ris_paint_surface surface = {0};
-    ris_paint_image color = {0}, detail = {0};
+    ris_paint_skin_images images = {0};
     ris_result result = ris__path_join(path, opt->head, "skin.obj", err);
     if (result || (result = ris_mesh_load_obj(path, &mesh, err)) ||
         (result = load_parts(opt->head, &all, err)) ||
         (result = ris_paint_surface_init(&surface, &mesh, all.eye, all.eye_count, all.brow, all.brow_count,
                                          err)) ||
-        (result = ris_paint_atlas(&surface, opt->size, &color, &detail, err)) ||
-        (result = save(opt->head, "skin.png", &color, err)))
+        (result = ris_paint_atlas(&surface, opt->size, &images, err)) ||
+        (result = save(opt->head, "skin.png", &images.color, err)) ||
+        (result = save(opt->head, "skin_detail.png", &images.detail, err)))
         goto done;
-    result = save(opt->head, "skin_detail.png", &detail, err);
+    result = save(opt->head, "skin_wrinkles.png", &images.wrinkles, err);
 done:
-    ris_paint_image_finish(&color);
-    ris_paint_image_finish(&detail);
+    ris_paint_skin_images_finish(&images);
     ris_paint_surface_finish(&surface);
     ris_mesh_finish(&mesh);
     free_parts(&all);

@@ -124,9 +124,11 @@ typedef struct ris_paint_site {
     ris_paint_shell shell;
 } ris_paint_site;
 
-/* Linear RGB albedo 0..1, and detail: height (0.5 = mean), oiliness, thinness. */
+#define RIS_PAINT_SMOOTH 0.75f /* height of skin without a wrinkle */
+
+/* Linear RGB albedo 0..1; detail: height (0.5 = mean), oiliness, thinness; height of squeezed skin. */
 typedef struct ris_paint_texel {
-    float color[3], detail[3];
+    float color[3], detail[3], wrinkle;
 } ris_paint_texel;
 
 /* skin.c */
@@ -140,6 +142,9 @@ typedef struct ris_paint_zones {
     float ear, nose, ala, cheek, forehead, chin, lower_face, neck, fold, lip_corner, nostril;
 } ris_paint_zones;
 ris_paint_zones ris_paint_find_zones(const ris_paint_surface *surface, const ris_paint_site *site);
+/* wrinkles.c: height of fully squeezed skin, 0..1, RIS_PAINT_SMOOTH where it does not fold. */
+float ris_paint_wrinkles(const ris_paint_surface *surface, const ris_paint_site *site,
+                         const ris_paint_zones *zones);
 
 /* An RGB image, top row first, 8 bits a channel. */
 typedef struct ris_paint_image {
@@ -158,9 +163,14 @@ float ris_paint_decode(float byte);
 /* PNG through a temporary file, renamed at the end. Errors: RIS_ERROR_FAILED. */
 ris_result ris_paint_image_save(const ris_paint_image *image, const char *path, ris_error *err);
 
-/* Paints skin colour (sRGB) and detail (linear) over the UV islands, size x size each (atlas.c). */
-ris_result ris_paint_atlas(const ris_paint_surface *surface, uint32_t size, ris_paint_image *color,
-                           ris_paint_image *detail, ris_error *err);
+/* The skin's images: colour (sRGB), detail and wrinkles (linear). */
+typedef struct ris_paint_skin_images {
+    ris_paint_image color, detail, wrinkles;
+} ris_paint_skin_images;
+void ris_paint_skin_images_finish(ris_paint_skin_images *images);
+/* Paints them over the UV islands, size x size each (atlas.c). */
+ris_result ris_paint_atlas(const ris_paint_surface *surface, uint32_t size, ris_paint_skin_images *out,
+                           ris_error *err);
 
 /* Sizes of the eyeball the eye texture is made for, mm. */
 typedef struct ris_paint_eye {

@@ -172,5 +172,6 @@ ris_paint_texel ris_paint_skin(const ris_paint_surface *surface, const ris_paint
     texel.detail[0] = 0.5f + 0.4f * ris_paint_clamp(height, -1.2f, 1.2f);
     texel.detail[1] = oiliness(&zones, site->p, s);
     texel.detail[2] = site->thinness;
+    texel.wrinkle = ris_paint_wrinkles(surface, site, &zones);
     return texel;
 }
