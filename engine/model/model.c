@@ -86,6 +86,7 @@ ris_result ris_model_create(const ris_head *head, ris_model **out, ris_error *er
         {ris__bake_fat, true},
         {ris__bake_puff, true},
         {ris__bake_bindings, true},
+        {ris__bake_lips, true},
         {ris__bake_anchors, false},
         {ris__bake_slide, false},
         {ris__bake_lids, false},
@@ -185,6 +186,7 @@ void ris_model_destroy(ris_model *model)
     free(model->contact_other);
     free(model->lid);
     free(model->lining);
+    free(model->lip_close);
     free(model->fat);
     free(model->puff);
     free(model->slide);

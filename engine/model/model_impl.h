@@ -66,6 +66,10 @@ ris_result ris__bake_groups(ris_bake *bake, ris_error *err);
 ris_result ris__bake_slide(ris_bake *bake, ris_error *err);
 /* KA-47: nodes over muscles that gather fat. */
 ris_result ris__bake_fat(ris_bake *bake, ris_error *err);
+/* How the lips meet over an open jaw. */
+ris_result ris__bake_lips(ris_bake *bake, ris_error *err);
+/* True for the ring of a lip: a sphincter of several fibres that closes on a point. */
+bool ris__muscle_rolls(const ris_muscle *muscle);
 /* Nodes over the muscles that wall the mouth. */
 ris_result ris__bake_puff(ris_bake *bake, ris_error *err);
 /* A node of the skin over a linear muscle. */

@@ -75,7 +75,7 @@ void ris__activation_init(ris_rig *rig)
     } beside[] = {
         {RIS__JAW_OPEN, RIS__JAW_SIDE, dynamics->jaw_onset_ms, dynamics->jaw_release_ms},
         {RIS__LID_UPPER_L, RIS__LID_LOWER_R, dynamics->lid_onset_ms, dynamics->lid_release_ms},
-        {RIS__TONGUE_OUT, RIS__CHEEK_PUFF_R, dynamics->onset_ms, dynamics->release_ms},
+        {RIS__TONGUE_OUT, RIS__LIP_LOWER_ROLL, dynamics->onset_ms, dynamics->release_ms},
     };
     for (size_t k = 0; k < sizeof beside / sizeof *beside; ++k) {
         for (uint32_t c = rig->first_beside + beside[k].first; /* a model made by hand may have none */

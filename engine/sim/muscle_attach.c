@@ -13,7 +13,39 @@
 #include "model/model_impl.h"
 #include "model/vec3.h"
 
+#define ROLL_RAD 1.1f /* turn of the free edge of a lip at roll 1 */
+#define ROLL_MM 2.0f  /* way of the skin before it towards the slit of the mouth */
 #define BONE_MM 80.0f /* radius of forehead and brow, about */
+
+/* The lip of a ring rolls about the line between its outer and its inner fibres, where the red begins: the free edge goes
+ * back over the teeth, or out when roll is negative; the skin before it follows. Not at the corners. p: a point held by
+ * segment k of a fibre, at the share s of it; up: outwards. */
+static ris_vec3 roll_lip(const ris_rig *rig, const ris_muscle *muscle, uint32_t k, float s, ris_vec3 up,
+                         ris_vec3 p)
+{
+    const ris_fiber *fiber = &rig->model->fiber[muscle->first_fiber];
+    const ris_vec3 *outer = rig->q + fiber[0].first_point + k,
+                   *inner = rig->q + fiber[muscle->fiber_count - 1].first_point + k;
+    const ris_vec3 a = v3_lerp(outer[0], outer[1], s), b = v3_lerp(inner[0], inner[1], s);
+    const ris_vec3 along =
+        v3_unit_or(v3_add(v3_sub(outer[1], outer[0]), v3_sub(inner[1], inner[0])), v3(1, 0, 0));
+    const ris_vec3 across = v3_sub(b, a),
+                   edge = v3_unit_or(v3_mad(across, -v3_dot(across, along), along), v3(0, 1, 0));
+    const ris_vec3 side = v3_cross(along, edge),
+                   front = v3_dot(side, up) < 0.0f ? v3_scale(side, -1.0f) : side;
+    const ris_vec3 r = v3_sub(p, v3_lerp(a, b, 0.5f));
+    const float width = v3_length(across), rest = v3_dot(r, along), down = v3_dot(r, edge),
+                out = v3_dot(r, front);
+    const float from_middle = 2.0f * ((float)k + s) / (float)(muscle->point_count - 1) - 1.0f;
+    const float middle = 1.0f - from_middle * from_middle * from_middle * from_middle;
+    const float roll = rig->roll[muscle->on_jaw] * middle;
+    const float share = f_smoothstep((down / width + 1.0f) / 2.0f);
+    double c, t;
+    ris__cos_sin((double)(roll * share * ROLL_RAD), &c, &t);
+    const float turned_down = (float)c * down + (float)t * out + ROLL_MM * roll * share;
+    const float turned_out = (float)c * out - (float)t * down;
+    return v3_mad(v3_mad(v3_mad(v3_sub(p, r), rest, along), turned_down, edge), turned_out, front);
+}
 
 static ris_vec3 attached_point(const ris_rig *rig, const ris_muscle *muscle, const ris_attach *attach)
 {
@@ -31,8 +63,13 @@ static ris_vec3 attached_point(const ris_rig *rig, const ris_muscle *muscle, con
         /* the skin of a lip or lid goes along its ring, but does not swing about with every segment */
         const ris_vec3 on_fiber = v3_lerp(a, b, attach->local.x + 0.5f);
         const float height = segment.size.y * rig->bulge[attach->segment];
-        return v3_mad(v3_mad(on_fiber, attach->local.y * height, segment.up),
-                      attach->local.z * segment.size.z, segment.wide);
+        const ris_vec3 held = v3_mad(v3_mad(on_fiber, attach->local.y * height, segment.up),
+                                     attach->local.z * segment.size.z, segment.wide);
+        if (rig->roll[muscle->on_jaw] == 0.0f || !ris__muscle_rolls(muscle)) {
+            return held;
+        }
+        return roll_lip(rig, muscle, attach->segment - fiber->first_segment, attach->local.x + 0.5f,
+                        segment.up, held);
     }
     return ris__segment_point(&segment, rig->p[point], rig->p[point + 1], a, b, rig->bulge[attach->segment],
                               attach->local);
@@ -135,9 +172,9 @@ static void attach_default(ris_rig *rig, uint32_t i)
     const ris_model *model = rig->model;
     ris_vec3 normal = v4_xyz(model->rest_normal[i]);
     ris_vec3 target = v3_add(v4_xyz(model->rest_position[i]), rig->move[i]);
-    const float jaw = model->jaw_weight[i];
+    const float jaw = model->jaw_weight[i] + (model->lip_close ? rig->close * model->lip_close[i] : 0.0f);
     if (rig->slides) {
-        const float slide = model->jaw_slide_weight ? model->jaw_slide_weight[i] : jaw;
+        const float slide = model->jaw_slide_weight ? model->jaw_slide_weight[i] : model->jaw_weight[i];
         const ris_vec3 open = ris__rigid_apply(&rig->jaw_open, target);
         const ris_vec3 slid = v3_sub(ris__rigid_apply(&rig->jaw, target), open);
         target = v3_mad(v3_lerp(target, open, jaw), slide, slid);

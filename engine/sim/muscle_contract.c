@@ -158,8 +158,10 @@ void ris__muscle_contract(ris_rig *rig, const float *pose)
 {
     const ris_model *model = rig->model;
     for (uint32_t side = 0; side < 2; ++side) {
+        rig->roll[side] = f_clamp(pose[rig->first_beside + RIS__LIP_UPPER_ROLL + side], -1.0f, 1.0f);
         rig->puff[side] = f_clamp(pose[rig->first_beside + RIS__CHEEK_PUFF_L + side], -1.0f, 1.0f);
     }
+    rig->close = f_clamp(pose[rig->first_beside + RIS__LIPS_CLOSE], 0.0f, 1.0f);
     for (uint32_t m = 0; m < model->muscle_count; ++m) {
         const ris_muscle *muscle = &model->muscle[m];
         const float activation = f_clamp(pose[m], 0.0f, 1.0f);
@@ -168,6 +170,10 @@ void ris__muscle_contract(ris_rig *rig, const float *pose)
         const ring_pose ring = sphincter ? pose_ring(rig, m, c, pose) : (ring_pose){.literal = true};
         /* a lip that protrudes takes its corner along as one that contracts does */
         rig->activation[m] = ring.literal ? activation : f_max(activation, ring.protrude);
+        if (!ring.literal && ris__muscle_rolls(muscle)) {
+            const float roll = rig->roll[muscle->on_jaw];
+            rig->activation[m] = f_max(rig->activation[m], f_max(roll, -roll));
+        }
         rig->activity[m] = f_min(rig->activation[m] / ACTIVITY_FULL, 1.0f);
         rig->contraction[m] = c;
         for (uint32_t f = 0; f < muscle->fiber_count; ++f) {

@@ -114,6 +114,8 @@ void ris__rig_reset(ris_rig *rig)
     memset(rig->drag, 0, 2 * (size_t)model->muscle_count * sizeof *rig->drag);
     memset(rig->squeeze, 0, model->muscle_count * sizeof *rig->squeeze);
     memset(rig->puff, 0, sizeof rig->puff);
+    memset(rig->roll, 0, sizeof rig->roll);
+    rig->close = 0.0f;
     memset(rig->move, 0, model->node_count * sizeof *rig->move);
     memset(rig->delta, 0, model->node_count * sizeof *rig->delta);
     memset(rig->lid_move, 0, model->lid_count * sizeof *rig->lid_move);

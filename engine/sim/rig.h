@@ -28,7 +28,10 @@ enum {
     RIS__TONGUE_TIP,
     RIS__TONGUE_WIDE,
     RIS__CHEEK_PUFF_L,
-    RIS__CHEEK_PUFF_R
+    RIS__CHEEK_PUFF_R,
+    RIS__LIPS_CLOSE,
+    RIS__LIP_UPPER_ROLL,
+    RIS__LIP_LOWER_ROLL
 };
 
 /* x -> rotation (x - point) + point + shift; identity leaves bits alone. */
@@ -96,6 +99,8 @@ typedef struct ris_rig {
     float *activity;    /* min(1, activation / 0.1) per muscle */
     ris_vec3 *q;        /* deformed control points (fiber_point_count) */
     float puff[2];      /* pressure in the left and right cheek, -1..1 */
+    float close;        /* of the lips over an open jaw, 0..1 */
+    float roll[2];      /* upper and lower lip, 1 = in, -1 = out */
     /* muscle_constrain */
     ris_drag *drag;    /* (2 x muscle_count): first and last end of sphincters */
     bool *constrained; /* per fibre point (fiber_point_count) */

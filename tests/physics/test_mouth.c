@@ -286,6 +286,53 @@ static void incisivi_press_the_lips(void **state)
     assert_true(left < 0.7f * right && below > 0.8f * right);
 }
 
+/* lips.close brings the lips together whatever the jaw does (AU8), by half when half; at rest it does nothing. */
+static void lips_close_over_an_open_jaw(void **state)
+{
+    (void)state;
+    hold("jaw.open=0.4");
+    const float open = opening();
+    hold("jaw.open=0.4,lips.close=0.5");
+    const float half = opening();
+    hold("jaw.open=0.4,lips.close=1");
+    print_message("opening %.2f mm, half closed %.2f, closed %.2f\n", (double)open, (double)half,
+                  (double)opening());
+    assert_true(open > 8.0f && half > 0.3f * open && half < 0.7f * open);
+    assert_true(opening() < 0.5f && turned_over() == 0);
+    hold("lips.close=1");
+    assert_true(opening() < 0.2f);
+}
+
+/* How far the red of one lip is out of the face on average, mm from rest. */
+static float red_out(bool of_lower)
+{
+    float sum = 0.0f, count = 0.0f;
+    for (uint32_t i = 0; i < model->node_count; ++i) {
+        if (ring[i] >= 5 && ring[i] <= 7 && lower[i] == of_lower && fabsf(model->rest_position[i].x) < 8.0f) {
+            sum += x[i].z - model->rest_position[i].z;
+            count += 1.0f;
+        }
+    }
+    assert_true(count > 4.0f);
+    return sum / count;
+}
+
+/* A lip rolls in over its teeth and out from them, each lip alone; rolled out, the mouth opens. */
+static void lips_roll_in_and_out(void **state)
+{
+    (void)state;
+    hold("lip.upper.roll=1");
+    print_message("roll in: red %.2f mm, lower %.2f\n", (double)red_out(false), (double)red_out(true));
+    assert_true(red_out(false) < -0.8f && fabsf(red_out(true)) < 0.6f && turned_over() == 0);
+    hold("lip.lower.roll=1");
+    print_message("lower in: red %.2f mm, upper %.2f\n", (double)red_out(true), (double)red_out(false));
+    assert_true(red_out(true) < -0.8f && fabsf(red_out(false)) < 0.6f && turned_over() == 0);
+    hold("lip.upper.roll=-1,lip.lower.roll=-1");
+    print_message("roll out: red %.2f mm, lower %.2f, opening %.2f mm\n", (double)red_out(false),
+                  (double)red_out(true), (double)opening());
+    assert_true(red_out(false) > 1.0f && red_out(true) > 1.0f && opening() > 2.0f && turned_over() == 0);
+}
+
 static ris_vec3 moved(uint32_t i)
 {
     return v3_sub(v4_xyz(x[i]), v4_xyz(model->rest_position[i]));
@@ -374,8 +421,12 @@ static void no_channel_turns_the_mouth_over(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_pout_thickens_and_a_smile_thins), cmocka_unit_test(lips_meet_and_part),
-        cmocka_unit_test(incisivi_press_the_lips),           cmocka_unit_test(the_lining_follows_the_lips),
+        cmocka_unit_test(a_pout_thickens_and_a_smile_thins),
+        cmocka_unit_test(lips_meet_and_part),
+        cmocka_unit_test(incisivi_press_the_lips),
+        cmocka_unit_test(lips_close_over_an_open_jaw),
+        cmocka_unit_test(lips_roll_in_and_out),
+        cmocka_unit_test(the_lining_follows_the_lips),
         cmocka_unit_test(no_channel_turns_the_mouth_over),
     };
     return cmocka_run_group_tests(tests, open_head, close_head);

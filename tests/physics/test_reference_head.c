@@ -203,6 +203,9 @@ static void no_channel_is_dead(void **state)
     (void)state;
     for (uint32_t c = 0; c < model->channel_count; ++c) {
         float before[5][12], after[5][12];
+        if (strcmp(model->channel[c].name, "lips.close") == 0) {
+            continue; /* closed lips have nothing to close; see test_mouth */
+        }
         static const ris_bone bones[] = {RIS_BONE_JAW, RIS_BONE_EYE_L, RIS_BONE_EYE_R, RIS_BONE_SKULL};
         memset(pose, 0, model->channel_count * sizeof *pose);
         need(ris_sim_reset(sim, &err));

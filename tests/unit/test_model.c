@@ -392,10 +392,11 @@ static void channels_are_muscles_then_beside(void **state)
 {
     (void)state;
     static const char *const order[] = {
-        "jaw.open",    "jaw.forward", "jaw.side",     "eye.yaw.L",   "eye.yaw.R",   "eye.pitch.L",
-        "eye.pitch.R", "head.yaw",    "head.pitch",   "head.roll",   "head.x",      "head.y",
-        "head.z",      "lid.upper.L", "lid.upper.R",  "lid.lower.L", "lid.lower.R", "tongue.out",
-        "tongue.tip",  "tongue.wide", "cheek.puff.L", "cheek.puff.R"};
+        "jaw.open",     "jaw.forward",  "jaw.side",   "eye.yaw.L",      "eye.yaw.R",
+        "eye.pitch.L",  "eye.pitch.R",  "head.yaw",   "head.pitch",     "head.roll",
+        "head.x",       "head.y",       "head.z",     "lid.upper.L",    "lid.upper.R",
+        "lid.lower.L",  "lid.lower.R",  "tongue.out", "tongue.tip",     "tongue.wide",
+        "cheek.puff.L", "cheek.puff.R", "lips.close", "lip.upper.roll", "lip.lower.roll"};
     ris_scene_def def = ris_default_scene_def();
     ris_model *model = NULL;
     ris_error err = {0};

@@ -181,6 +181,8 @@ typedef struct ris_model {
     ris_fat_node *fat;
     uint32_t puff_count; /* 0 in the kaehler tissue */
     ris_puff_node *puff;
+    float *
+        lip_close; /* what lips.close 1 adds to the jaw weight; NULL: no lips, or the kaehler tissue (node_count) */
     uint32_t lining_count; /* 0 without lips, mouth_cavity or in the kaehler tissue */
     ris_lining_node *lining;
     /* contact: nothing in the kaehler tissue */
