@@ -8,9 +8,9 @@
 #include <string.h>
 
 #define FREE_FROM 0.3f /* of the muscle's length: where the unbacked middle of the wall begins, */
-#define FREE_TO 0.55f  /* and where it ends, before the corner of the mouth */
+#define FREE_TO 0.5f   /* and where it ends, before the corner of the mouth */
 #define SUCTION 0.6f   /* of the pressure: the teeth stand close behind, */
-#define SUCKED 0.7f    /* and of its radius: the lips stay where the teeth hold them */
+#define SUCKED 0.8f    /* and of its radius: the lips stay where the teeth hold them */
 
 static void find_wall(ris_bake *bake, uint32_t m, const bool *apart)
 {
@@ -26,8 +26,8 @@ static void find_wall(ris_bake *bake, uint32_t m, const bool *apart)
         const float beyond = length * f_max(f_max(FREE_FROM - place.along, place.along - FREE_TO), 0.0f);
         const float ratio2 = (place.beside_mm * place.beside_mm + beyond * beyond) / (reach * reach);
         const float most = muscle->def->puff_mm * f_smoothstep(2.0f * place.facing);
-        const float rise = most * f_smoothstep(1.0f - ratio2);
-        const float sink = SUCTION * most * f_smoothstep(1.0f - ratio2 / (SUCKED * SUCKED));
+        const float bell = f_max(1.0f - ratio2, 0.0f), sunk = f_max(1.0f - ratio2 / (SUCKED * SUCKED), 0.0f);
+        const float rise = most * bell * bell, sink = SUCTION * most * sunk * sunk;
         if (rise > 1e-3f) {
             ris_puff_node *node = &model->puff[model->puff_count++];
             node->node = i;
@@ -40,7 +40,8 @@ static void find_wall(ris_bake *bake, uint32_t m, const bool *apart)
 
 ris_result ris__bake_puff(ris_bake *bake, ris_error *err)
 {
-    static const char *const regions[] = {"mouth_cavity", "inner_lip_rim", "lids", "eye_socket", "nose"};
+    static const char *const regions[] = {"lips", "mouth_cavity", "inner_lip_rim",
+                                          "lids", "eye_socket",   "nose"};
     ris_model *model = bake->model;
     size_t walls = 0;
     bool *apart = NULL;

@@ -13,8 +13,8 @@
 #include "model/model_impl.h"
 #include "model/vec3.h"
 
-#define ROLL_RAD 1.1f /* turn of the free edge of a lip at roll 1 */
-#define ROLL_MM 2.0f  /* way of the skin before it towards the slit of the mouth */
+#define ROLL_RAD 1.0f /* turn of the free edge of a lip at roll 1 */
+#define ROLL_MM 1.0f  /* way of the skin before it towards the slit of the mouth */
 #define BONE_MM 80.0f /* radius of forehead and brow, about */
 
 /* The lip of a ring rolls about the line between its outer and its inner fibres, where the red begins: the free edge goes
@@ -37,7 +37,7 @@ static ris_vec3 roll_lip(const ris_rig *rig, const ris_muscle *muscle, uint32_t 
     const float width = v3_length(across), rest = v3_dot(r, along), down = v3_dot(r, edge),
                 out = v3_dot(r, front);
     const float from_middle = 2.0f * ((float)k + s) / (float)(muscle->point_count - 1) - 1.0f;
-    const float middle = 1.0f - from_middle * from_middle * from_middle * from_middle;
+    const float middle = (1.0f - from_middle * from_middle) * (1.0f - from_middle * from_middle);
     const float roll = rig->roll[muscle->on_jaw] * middle;
     const float share = f_smoothstep((down / width + 1.0f) / 2.0f);
     double c, t;
