@@ -6,7 +6,7 @@
 
 #define RIS_PHONE_SIZE 24 /* bytes of a phone's symbol with its terminator */
 #define RIS_PHONE_PARTS 3
-#define RIS_SPEECH_LEAD_S 0.05 /* the flesh reaches a pose about so much later (test_visemes) */
+#define RIS_SPEECH_LEAD_S 0.04 /* the flesh reaches a pose about so much later (test_visemes) */
 
 /* Parts of the face that are shaped apart from each other. */
 typedef enum ris_articulator { RIS_LIPS, RIS_JAW, RIS_TONGUE, RIS_ARTICULATORS } ris_articulator;
