@@ -13,6 +13,8 @@
 #define REACH_S 1.0   /* no dominance matters this far away */
 #define PAUSE_S 0.25  /* a longer gap between phones, and what lies before and behind them, is silence */
 #define RELEASE_S 0.1 /* between a phone and the silence's hold */
+#define FALL_S                                                                                               \
+    0.15 /* a long phone is held but for so much at its ends: dominance must not run out within it */
 #define LONG_S 1e6
 
 static ris_result no_memory(const ris_json_at *at, ris_error *err)
@@ -85,11 +87,12 @@ void ris__speech_touch(const ris_speech *speech, bool *touches)
 static void add_segment(ris_speech *speech, double start_s, double end_s, const ris_phone_part *part,
                         const char *phone)
 {
-    double hold = speech->phonetics.viseme[part->viseme].hold, middle_s = (start_s + end_s) / 2;
+    double hold = speech->phonetics.viseme[part->viseme].hold;
+    double fall_s = fmin((1 - hold) * (end_s - start_s) / 2, FALL_S);
     ris_utterance *segment = &speech->segment[speech->segment_count++];
-    *segment = (ris_utterance){.from_s = middle_s - hold * (end_s - start_s) / 2,
-                               .to_s = middle_s + hold * (end_s - start_s) / 2,
-                               .middle_s = middle_s,
+    *segment = (ris_utterance){.from_s = start_s + fall_s,
+                               .to_s = end_s - fall_s,
+                               .middle_s = (start_s + end_s) / 2,
                                .amount = part->amount,
                                .viseme = part->viseme};
     strcpy(segment->phone, phone);

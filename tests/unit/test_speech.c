@@ -96,6 +96,23 @@ static void test_a_lone_phone(void **state)
     ris_clip_destroy(clip);
 }
 
+/* A sung vowel is there from its beginning to its end, without a gap or a leap. */
+static void test_a_long_phone(void **state)
+{
+    (void)state;
+    ris_clip *clip =
+        clip_of("{\"format\":\"risorius-clip\",\"version\":1,\"duration_s\":12,\"layers\":[{\"lead_s\":0,"
+                "\"speech\":[" PHONE("ɑː", "1", "11") END);
+    float before = 0;
+    for (int i = 0; i <= 1000; i++) {
+        float now = sample(clip, 1 + 0.01 * i, JAW);
+        assert_true(i < 20 || i > 980 || now > 0.95f * 0.8f);
+        assert_true(i == 0 || fabsf(now - before) < 0.1f);
+        before = now;
+    }
+    ris_clip_destroy(clip);
+}
+
 /* p between open vowels: lips and jaw are the consonant's; n leaves the lips to the vowel; rounding begins in the
  * consonants before u. */
 static void test_coarticulation(void **state)
@@ -359,10 +376,15 @@ static void test_tables_that_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_dominance_by_hand), cmocka_unit_test(test_a_lone_phone),
-        cmocka_unit_test(test_coarticulation),    cmocka_unit_test(test_lead),
-        cmocka_unit_test(test_pauses_and_parts),  cmocka_unit_test(test_symbols),
-        cmocka_unit_test(test_refuses),           cmocka_unit_test(test_tables_that_are_refused),
+        cmocka_unit_test(test_dominance_by_hand),
+        cmocka_unit_test(test_a_lone_phone),
+        cmocka_unit_test(test_a_long_phone),
+        cmocka_unit_test(test_coarticulation),
+        cmocka_unit_test(test_lead),
+        cmocka_unit_test(test_pauses_and_parts),
+        cmocka_unit_test(test_symbols),
+        cmocka_unit_test(test_refuses),
+        cmocka_unit_test(test_tables_that_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
