@@ -111,6 +111,18 @@ static void openface_can_be_read(void **state)
     ris__take_finish(&table);
 }
 
+/* Half a second at one frame a second has no frame: a face is lost for two. */
+static void few_frames_lose_a_face_too(void **state)
+{
+    ris_take_table table;
+    ris_take_info info;
+    (void)state;
+    read_take("--seconds 40 --fps 1 --lose 0.3 --drop 0 --spikes 0", RIS_TAKE_LIVE_LINK, &table, &info);
+    assert_int_equal(info.rows, 40);
+    assert_true(info.lost > 5 && info.lost < 38);
+    ris__take_finish(&table);
+}
+
 static void wrong_words(void **state)
 {
     (void)state;
@@ -138,9 +150,9 @@ static int open_folder(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(same_bytes_everywhere), cmocka_unit_test(every_shape_is_used),
-        cmocka_unit_test(faults_come_as_told),   cmocka_unit_test(openface_can_be_read),
-        cmocka_unit_test(wrong_words),
+        cmocka_unit_test(same_bytes_everywhere),      cmocka_unit_test(every_shape_is_used),
+        cmocka_unit_test(faults_come_as_told),        cmocka_unit_test(openface_can_be_read),
+        cmocka_unit_test(few_frames_lose_a_face_too), cmocka_unit_test(wrong_words),
     };
     return cmocka_run_group_tests(tests, open_folder, NULL);
 }

@@ -54,7 +54,8 @@ static void step(const take_options *options, faults *f)
         f->dropped = 1 + ris__pcg_below(&f->drop, 6);
     }
     if (unit(&f->lose) < options->lose) {
-        f->lost = 2 + ris__pcg_below(&f->lose, (uint32_t)(0.5 * options->fps));
+        const uint32_t half_second = (uint32_t)(0.5 * options->fps);
+        f->lost = 2 + ris__pcg_below(&f->lose, half_second ? half_second : 1);
     }
 }
 
