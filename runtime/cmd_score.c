@@ -147,9 +147,15 @@ static ris_result name_unit(const score_row *row, ris_result r, ris_error *err)
     return ris_fail(err, r, "%s: %.*s", row->unit->unit, (int)(sizeof text - RIS_UNIT_SIZE - 3), text);
 }
 
+/* The pose a row is measured with. */
+static const char *recipe_of(const score_run *run, const score_row *row)
+{
+    return run->args.pose ? run->args.pose : row->unit->recipe;
+}
+
 static ris_result measure_row(score_run *run, score_row *row, ris_error *err)
 {
-    const char *recipe = run->args.pose ? run->args.pose : row->unit->recipe;
+    const char *recipe = recipe_of(run, row);
     ris_result r = ris__reference_unit(&run->reference, row->unit->unit, run->sculpt, err);
     if (r || !recipe[0]) {
         return r;
@@ -203,13 +209,13 @@ static ris_result measure_rows(score_run *run, const ris_cli *cli, ris_error *er
     return r;
 }
 
-static void print_row(const score_row *row)
+static void print_row(const score_run *run, const score_row *row)
 {
     const ris_score *s = &row->score;
     char size[32];
     snprintf(size, sizeof size, "%.1f/%.1f", s->simulated_mm, s->sculpted_mm);
     printf("%-44s %6.3f %6.2f %7.3f %6.3f %6.3f  %-10s  %s\n", row->unit->unit, s->cos, s->gain, s->r2,
-           s->r2fit, s->far, size, row->unit->recipe);
+           s->r2fit, s->far, size, recipe_of(run, row));
 }
 
 static void print_text(const score_run *run)
@@ -219,7 +225,7 @@ static void print_text(const score_run *run)
            "max_mm");
     for (uint32_t i = 0; i < run->row_count; i++) {
         if (run->row[i].counts) {
-            print_row(&run->row[i]);
+            print_row(run, &run->row[i]);
         }
     }
     if (run->counted) {
@@ -234,7 +240,7 @@ static void print_text(const score_run *run)
             printf("not counted  %s: %s\n", row->unit->unit, row->unit->argument);
         }
         if (!row->counts && row->measured) {
-            print_row(row);
+            print_row(run, row);
         }
     }
 }
@@ -250,7 +256,7 @@ static void print_json(const score_run *run)
         printf("%s\n  {\"unit\": ", i ? "," : "");
         cli_json_string(stdout, row->unit->unit);
         printf(", \"recipe\": ");
-        cli_json_string(stdout, run->args.pose ? run->args.pose : row->unit->recipe);
+        cli_json_string(stdout, recipe_of(run, row));
         printf(", \"argument\": ");
         cli_json_string(stdout, row->unit->argument);
         if (row->measured) {

@@ -162,6 +162,8 @@ static void other_poses_break_a_bound(void **state)
     expect(score_line(smile, "--unit smile --pose depressor_anguli_oris=1"), 1, "smile: cos -");
     expect(score_line(smile, "--unit smile --pose zygomaticus_major=1,frontalis_outer=1"), 1, "smile: far ");
     assert_non_null(strstr(run.out, "BROKEN  smile: far"));
+    assert_non_null(
+        strstr(run.out, "  zygomaticus_major=1,frontalis_outer=1\n")); /* what was measured, not the recipe */
 }
 
 static void wrong_words_and_files(void **state)
