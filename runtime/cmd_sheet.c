@@ -319,6 +319,8 @@ static ris_result run(ris_cli *cli, int argc, char **argv, ris_error *err)
     sheet_job sheet = {.args = &args};
     r = cli_need_head(&cmd_sheet, count, err);
     r = r ? r : check_args(&sheet, err);
+    r = r ? r : ris__output_try(args.out, err);
+    r = r || !args.key ? r : ris__output_try(args.key, err);
     r = r ? r : open_sheet(&sheet, cli, err);
     r = r ? r : run_sheet(&sheet, cli, err);
     close_sheet(&sheet);

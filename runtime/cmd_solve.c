@@ -1,6 +1,8 @@
 /* risorius solve HEAD TARGET: the activations whose simulated face comes nearest to vertices or landmarks. */
 #include "solve.h"
 
+#include "base/file.h"
+
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -94,7 +96,10 @@ static void close_run(solve_run *run)
 
 static ris_result solve(solve_run *run, ris_error *err)
 {
-    ris_result r = backend_load(&run->backend, run->args.head, err);
+    ris_result r = run->args.out ? ris__output_try(run->args.out, err) : RIS_OK;
+    if (!r) {
+        r = backend_load(&run->backend, run->args.head, err);
+    }
     if (!r && !(run->pose = calloc(run->backend.model->channel_count + 1u, sizeof *run->pose))) {
         r = ris_fail(err, RIS_ERROR_MEMORY, "out of memory for a pose");
     }

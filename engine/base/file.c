@@ -145,6 +145,14 @@ ris_result ris__output_open(ris_output_file *file, const char *path, ris_error *
     return RIS_OK;
 }
 
+ris_result ris__output_try(const char *path, ris_error *err)
+{
+    ris_output_file file = {0};
+    ris_result result = written_directly(path) ? RIS_OK : ris__output_open(&file, path, err);
+    ris__output_discard(&file);
+    return result;
+}
+
 ris_result ris__output_write(ris_output_file *file, const void *data, size_t size, ris_error *err)
 {
     errno = 0;

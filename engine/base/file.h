@@ -34,6 +34,8 @@ typedef struct ris_output_file {
 /* Errors of all: RIS_ERROR_FAILED with path and reason. The library never touches signals: a program that
  * wants an error instead of a signal at a file-size limit ignores SIGXFSZ (and SIGPIPE for pipes). */
 ris_result ris__output_open(ris_output_file *file, const char *path, ris_error *err);
+/* Whether path can be written, before long work; leaves nothing behind. A device or pipe is not touched. */
+ris_result ris__output_try(const char *path, ris_error *err);
 ris_result ris__output_write(ris_output_file *file, const void *data, size_t size, ris_error *err);
 /* Numbers are written as in the C locale, whatever the program's. */
 ris_result ris__output_printf(ris_output_file *file, ris_error *err, const char *format, ...)

@@ -45,6 +45,20 @@ static ris_result check(const ris_solve_def *def, const ris_target *target, ris_
     return RIS_OK;
 }
 
+/* A target stands in the space of the head: how the head is held is no part of a face. */
+static ris_result check_head(const ris_solver *s, uint32_t k, ris_error *err)
+{
+    for (uint32_t c = 0; c < s->model->channel_count; ++c) {
+        const char *name = s->model->channel[c].name;
+        if (s->unit[(size_t)k * s->model->channel_count + c] != 0.0f && strncmp(name, "head.", 5) == 0) {
+            return ris_fail(err, RIS_ERROR_USAGE,
+                            "control %s: %s cannot be solved for, it moves the head as a whole",
+                            s->def->control[k].name, name);
+        }
+    }
+    return RIS_OK;
+}
+
 static ris_result open_solver(ris_solver *s, ris_error *err)
 {
     const size_t n = s->n, nodes = s->model->node_count, rows = s->rows, channels = s->model->channel_count;
@@ -83,6 +97,7 @@ static ris_result open_solver(ris_solver *s, ris_error *err)
         const double scale = fmax(-(double)control->minimum, (double)control->maximum);
         s->knob[k] = (ris_knob){scale, (double)control->minimum / scale, (double)control->maximum / scale};
         r = ris_pose_add(s->model, control->name, (float)scale, s->unit + k * channels, err);
+        r = r ? r : check_head(s, k, err);
     }
     return r;
 }

@@ -240,8 +240,11 @@ static ris_result read_json(const ris_model *model, const ris_json *json, ris_ta
         (r = ris__json_choice(&unit, RIS_JSON_OPTIONAL, units, &which, err))) {
         return r;
     }
-    if (!json_is_object(points.value) || json_object_size(points.value) == 0) {
+    if (!json_is_object(points.value)) {
         return ris__json_expected(&points, err, "an object of landmarks and their places");
+    }
+    if (json_object_size(points.value) == 0) {
+        return ris__json_fail(&points, err, "expected at least one landmark, found none");
     }
     const char *name;
     json_t *value;

@@ -81,6 +81,7 @@ static void test_output_appears_when_complete(void **state)
     ris_error err = {0};
     ris_output_file file = {0};
     const char *path = scratch_write("out.txt", "old");
+    assert_int_equal(ris__output_try(path, &err), RIS_OK); /* changes nothing */
     assert_int_equal(ris__output_open(&file, path, &err), RIS_OK);
     assert_int_equal(ris__output_write(&file, "new ", 4, &err), RIS_OK);
     assert_int_equal(ris__output_printf(&file, &err, "%d", 12), RIS_OK);
@@ -118,6 +119,8 @@ static void test_output_errors(void **state)
     (void)state;
     ris_error err = {0};
     expect_error(&err, ris__file_write(scratch_path("no/such/folder"), "x", 1, &err), RIS_ERROR_FAILED,
+                 "folder: cannot write: No such file or directory");
+    expect_error(&err, ris__output_try(scratch_path("no/such/folder"), &err), RIS_ERROR_FAILED,
                  "folder: cannot write: No such file or directory");
     expect_error(&err, ris__file_write(scratch_folder, "x", 1, &err), RIS_ERROR_FAILED,
                  "cannot write: Is a directory");

@@ -33,7 +33,7 @@ ris_result ris_target_reduce(const ris_model *model, ris_target *target, ris_err
 /* Safe on a zeroed target. */
 void ris_target_finish(ris_target *target);
 
-/* Something that may act: a channel, or any name that ris_pose_add knows. */
+/* Something that may act: a channel, or any name that ris_pose_add knows; nothing that moves the head as a whole (head.*). */
 typedef struct ris_control {
     char name[RIS_NAME_SIZE];
     float minimum, maximum; /* one of them may be 0, rest is 0 */
