@@ -146,25 +146,15 @@ static bool draw_drift(ris_idle *idle, ris_pcg pcg)
     return idle->drift != NULL;
 }
 
-static int32_t find_channel(const ris_model *model, const char *name)
-{
-    for (uint32_t c = 0; c < model->channel_count; c++) {
-        if (strcmp(model->channel[c].name, name) == 0) {
-            return (int32_t)c;
-        }
-    }
-    return -1;
-}
-
 static void find_channels(ris_idle *idle, const ris_model *model)
 {
     static const char *const lid[] = {"lid.upper.L", "lid.upper.R", "lid.lower.L", "lid.lower.R"};
     static const char *const eye[] = {"eye.yaw.L", "eye.yaw.R", "eye.pitch.L", "eye.pitch.R"};
     static const char *const head[] = {"head.yaw", "head.pitch", "head.roll", "head.y"};
     for (int i = 0; i < 4; i++) {
-        idle->lid[i] = find_channel(model, lid[i]);
-        idle->eye[i] = find_channel(model, eye[i]);
-        idle->head[i] = find_channel(model, head[i]);
+        idle->lid[i] = ris_model_channel(model, lid[i]);
+        idle->eye[i] = ris_model_channel(model, eye[i]);
+        idle->head[i] = ris_model_channel(model, head[i]);
     }
 }
 
@@ -274,10 +264,10 @@ static double breath_at(const ris_idle *idle, double time_s)
                              : 1 - ris__ease(RIS_EASE_MINIMUM_JERK, (phase - BREATH_IN) / (1 - BREATH_IN));
 }
 
-static void add(float *pose, uint32_t first, uint32_t count, int32_t channel, double value)
+static void add(float *pose, uint32_t first, uint32_t count, uint32_t channel, double value)
 {
-    if (channel >= 0 && (uint32_t)channel >= first && (uint32_t)channel - first < count) {
-        pose[(uint32_t)channel - first] += (float)value;
+    if (channel != UINT32_MAX && channel >= first && channel - first < count) {
+        pose[channel - first] += (float)value;
     }
 }
 
@@ -308,13 +298,13 @@ void ris__idle_add(const ris_idle *idle, double time_s, uint32_t first, uint32_t
 void ris__idle_touch(const ris_idle *idle, bool *touches)
 {
     for (int i = 0; i < 4; i++) {
-        if (idle->lid[i] >= 0) {
+        if (idle->lid[i] != UINT32_MAX) {
             touches[idle->lid[i]] = true;
         }
-        if (idle->eye[i] >= 0) {
+        if (idle->eye[i] != UINT32_MAX) {
             touches[idle->eye[i]] = true;
         }
-        if (idle->head[i] >= 0) {
+        if (idle->head[i] != UINT32_MAX) {
             touches[idle->head[i]] = true;
         }
     }

@@ -38,10 +38,10 @@ typedef struct ris_idle {
     uint32_t blink_count, gaze_count, saccade_count, drift_count;
     ris_blink *blink;
     ris_shift *gaze, *saccade; /* each begins with one at 0 to the middle */
-    float *drift;    /* (drift_count, 3) control values of a closed cubic B-spline: yaw, pitch, roll */
-    int32_t lid[4];  /* channels, -1 = the model has none: upper L R, lower L R */
-    int32_t eye[4];  /* yaw L R, pitch L R */
-    int32_t head[4]; /* yaw, pitch, roll, y */
+    float *drift;     /* (drift_count, 3) control values of a closed cubic B-spline: yaw, pitch, roll */
+    uint32_t lid[4];  /* channels, UINT32_MAX = the model has none: upper L R, lower L R */
+    uint32_t eye[4];  /* yaw L R, pitch L R */
+    uint32_t head[4]; /* yaw, pitch, roll, y */
 } ris_idle;
 
 /* NULL: no memory. ris__idle_destroy takes NULL. */

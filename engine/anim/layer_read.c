@@ -111,6 +111,9 @@ static ris_result read_take(const ris_json_at *at, const ris_json_at *adjust, ri
     if (words[0] && ris_take_adjust(&def, words, &reason) != RIS_OK) {
         return ris__json_fail(adjust, r->err, "%s", reason.text);
     }
+    if (def.onset) {
+        return ris__json_fail(adjust, r->err, "muscles in a clip have their onset already");
+    }
     result = ris__clip_count_file(path, r);
     return result ? result : ris_take_load(r->names.model, path, &def, &layer->clip, NULL, r->err);
 }

@@ -34,7 +34,7 @@ static ris_vec3 roll_lip(const ris_rig *rig, const ris_muscle *muscle, uint32_t 
     const ris_vec3 side = v3_cross(along, edge),
                    front = v3_dot(side, up) < 0.0f ? v3_scale(side, -1.0f) : side;
     const ris_vec3 r = v3_sub(p, v3_lerp(a, b, 0.5f));
-    const float width = v3_length(across), rest = v3_dot(r, along), down = v3_dot(r, edge),
+    const float width = f_max(v3_length(across), 1e-3f), rest = v3_dot(r, along), down = v3_dot(r, edge),
                 out = v3_dot(r, front);
     const float from_middle = 2.0f * ((float)k + s) / (float)(muscle->point_count - 1) - 1.0f;
     const float middle = (1.0f - from_middle * from_middle) * (1.0f - from_middle * from_middle);

@@ -198,6 +198,9 @@ static void test_includes_that_are_refused(void **state)
     expect_bad(
         scratch_write("adjusted.json", START "\"layers\":[{\"openface\":\"take.csv\",\"adjust\":\"turn\"}]}"),
         "layers[0].adjust: ");
+    expect_bad(
+        scratch_write("onset.json", START "\"layers\":[{\"openface\":\"take.csv\",\"adjust\":\"onset\"}]}"),
+        "layers[0].adjust: muscles in a clip have their onset already");
     expect_bad(scratch_write("no_take.json", START "\"layers\":[{\"adjust\":\"onset\",\"idle\":{}}]}"),
                "layers[0].adjust: only a performance is adjusted");
     expect_bad(scratch_write("lost.json", START "\"layers\":[{\"live_link\":\"lost.csv\"}]}"),
