@@ -364,6 +364,7 @@ static void weigh(const lid_bake *b, uint32_t i)
     const float skin = f_min(rest / STRETCHES, 1.0f);
     node->upper = (b->kind[i] & KIND_UPPER) != 0;
     node->lining = b->ring[i] < 0;
+    node->margin = b->ring[i] == b->margin;
     node->weight_close = node->upper ? skin * skin * skin : f_smoothstep((rest - LOWER_FOLD) / LOWER_ROLL);
     node->weight_open = node->upper ? rest * (1.5f - 0.5f * rest) : node->weight_close;
     if (node->lining) { /* inside the ball, loose: takes little of what its lid does */

@@ -90,6 +90,7 @@ ris_result ris_model_create(const ris_head *head, ris_model **out, ris_error *er
         {ris__bake_anchors, false},
         {ris__bake_slide, false},
         {ris__bake_lids, false},
+        {ris__bake_lid_triangles, false},
         {ris__bake_contact, false},
         {ris__bake_push, false},
         {ris__bake_channels, false},
@@ -185,6 +186,7 @@ void ris_model_destroy(ris_model *model)
     free(model->contact_touch);
     free(model->contact_other);
     free(model->lid);
+    free(model->lid_triangle);
     free(model->lining);
     free(model->lip_close);
     free(model->fat);

@@ -102,6 +102,7 @@ ris_vec3 ris__anchor_at_rest(const ris_model *model, uint32_t node);
 ris_result ris__bake_anchors(ris_bake *bake, ris_error *err);
 /* Nodes of the eyelids with their weights and closing angles; thinner, firmly held skin there. */
 ris_result ris__bake_lids(ris_bake *bake, ris_error *err);
+ris_result ris__bake_lid_triangles(ris_bake *bake, ris_error *err);
 /* What the contact stage needs: grids, limits, pairs of the lips. After lids (eyes) and before push is done. */
 ris_result ris__bake_contact(ris_bake *bake, ris_error *err);
 /* Constants of the stages and the stable time step (docs/physics.md). */

@@ -21,6 +21,7 @@
 #define MEET_SHARE 0.6f /* ... where the opening is this share of the widest, on the lower margin as it was */
 #define FULL_MM 0.8f    /* how much a closed lid rounds out between margin and fold */
 #define CLEAR_MM 0.25f  /* nearest a moved anchor comes to the eye */
+#define LINING_LESS 0.5f /* of what the surface of the eye comes out by, the lining lies less deep in it */
 #define THICK_SHARE 0.5f /* what lies farther out at rest keeps this share of it ... */
 #define THICK_MM 0.15f   /* ... up to so much, so that a lid pressed on the cornea is not pressed flat */
 
@@ -71,9 +72,11 @@ static lid_state read_state(const ris_rig *rig, const float *beside, uint32_t ey
 static float lower_turn(const lid_state *s, float share)
 {
     const float up = f_max(s->lower, 0.0f) * LOWER_UP_RAD * (share * share);
-    const float down = f_min(s->lower, 0.0f) * LOWER_DOWN_RAD * (share * (2.0f - share));
-    const float meet = MEET_HALF * f_max(1.0f - share / MEET_SHARE, 0.0f) * (share * s->open_rad);
-    return ((up + down) + s->pitch * share) + s->closed * meet;
+    const float gaze = s->pitch * share;
+    const float down = f_min(s->lower, 0.0f) * LOWER_DOWN_RAD * (share * (2.0f - share)) + f_min(gaze, 0.0f);
+    const float near = s->closed * f_max(1.0f - share / MEET_SHARE, 0.0f);
+    const float meet = MEET_HALF * (share * s->open_rad);
+    return ((up + f_max(gaze, 0.0f)) + (1.0f - near) * down) + near * meet;
 }
 
 static float node_turn(const lid_state *s, const ris_lid_node *lid)
@@ -109,11 +112,14 @@ static ris_vec3 clear_eye(const lid_state *s, const ris_lid_eye *eye, const ris_
     return v3_scale(p, f_max(r + bulge, now + gap) / r);
 }
 
-/* The lining lies inside the eye, and goes no deeper when the cornea comes by. */
-static ris_vec3 clear_lining(const lid_state *s, const ris_lid_eye *eye, const ris_lid_node *lid, ris_vec3 p)
+/* The lining lies inside the eye, and goes no deeper when the cornea comes by: a little less deep, since its edges are
+ * straight. */
+static ris_vec3 clear_lining(const lid_state *s, const ris_lid_eye *eye, const ris_lid_node *lid,
+                             ris_vec3 rest, ris_vec3 p)
 {
     const float r = v3_length(p), now = ris__eye_surface(eye, v3_scale(p, 1.0f / r), s->gaze);
-    return v3_scale(p, f_max(r, now + lid->gap_mm) / r);
+    const float come = f_max(now - (v3_length(rest) - lid->gap_mm), 0.0f);
+    return v3_scale(p, f_max(r, now + lid->gap_mm + LINING_LESS * come) / r);
 }
 
 static bool is_zero(ris_vec3 v)
@@ -141,7 +147,7 @@ static ris_vec3 place(const lid_state *s, const ris_rig *rig, const ris_lid_node
         p = v3(p.x, p.y * scale, p.z * scale);
     }
     p = v3_add(p, v3_lerp(rig->lid_move[k], facing_move(rig, lid), lid->lining ? 1.0f : shut));
-    return lid->lining ? clear_lining(s, eye, lid, p) : clear_eye(s, eye, lid, rest, p);
+    return lid->lining ? clear_lining(s, eye, lid, rest, p) : clear_eye(s, eye, lid, rest, p);
 }
 
 void ris__lid_pose(ris_rig *rig, const float *pose)
@@ -159,15 +165,18 @@ void ris__lid_pose(ris_rig *rig, const float *pose)
         const uint32_t i = lid->node;
         const ris_vec3 centre = model->lid_eye[lid->eye].centre;
         const ris_vec3 before = v3_sub(rig->target[i], v4_xyz(rig->delta[i]));
+        rig->lid_turn[k] = (ris_turn){1.0f, 0.0f};
         if (s->still && is_zero(rig->lid_move[k]) && (!lid->lining || is_zero(facing_move(rig, lid)))) {
             continue; /* at rest to the bit */
         }
         double cosine, sine;
         ris__cos_sin((double)node_turn(s, lid), &cosine, &sine);
+        rig->lid_turn[k] = (ris_turn){(float)cosine, (float)sine};
         const ris_vec3 rest = v3_sub(v4_xyz(model->rest_position[i]), centre);
         rig->target[i] = v3_add(centre, place(s, rig, lid, k, rest, cosine, sine));
         rig->delta[i] = v4_from(v3_sub(rig->target[i], before), 0.0f);
         rig->point[i].a = v4_from(rig->target[i], 0.0f);
         rig->point[i].b = v4_from(turn(v4_xyz(rig->point[i].b), cosine, sine), 0.0f);
     }
+    ris__lid_unfold(rig);
 }

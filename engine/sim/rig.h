@@ -48,6 +48,11 @@ typedef struct ris_drag {
     float strength;        /* 0..1, activity of the pull */
 } ris_drag;
 
+/* A turn about +x. */
+typedef struct ris_turn {
+    float cosine, sine;
+} ris_turn;
+
 #define RIS__TONGUE_STATIONS 33
 #define RIS__TONGUE_STEPS 64
 
@@ -122,6 +127,10 @@ typedef struct ris_rig {
     ris_tongue tongue;
     /* lid_pose */
     ris_vec3 *lid_move; /* what muscles and jaw move the nodes of the lids by, mm (lid_count) */
+    ris_turn *lid_turn; /* about the lateral axis (lid_count) */
+    /* lid_unfold */
+    ris_vec3 *lid_push; /* scratch, zero between ticks, mm (lid_count) */
+    ris_vec3 *lid_around; /* scratch: normals times area around nodes (lid_node_count) */
     /* contact_pose */
     ris_contact_body body[RIS_CONTACT_BODIES];
     /* head_inertia */
@@ -144,6 +153,8 @@ void ris__muscle_relax(ris_rig *rig);
 void ris__muscle_bulge(ris_rig *rig);
 void ris__muscle_attach(ris_rig *rig);
 void ris__lid_pose(ris_rig *rig, const float *pose);
+/* Called by lid_pose: no triangle of a lid turns over. */
+void ris__lid_unfold(ris_rig *rig);
 void ris__tongue_pose(ris_rig *rig, const float *pose);
 void ris__contact_pose(ris_rig *rig);
 /* at_once: the head is held where it is, however it came there. */

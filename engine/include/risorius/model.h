@@ -104,12 +104,21 @@ typedef struct ris_lid_node {
     uint32_t facing[2];
     float facing_share; /* 0..1, of facing[1] */
     uint8_t eye;        /* 0 = L, 1 = R */
-    bool upper, lining;
+    bool upper, lining, margin;
     float weight_close, weight_open;
     float close_rad, close_mm; /* upper: down to the lower margin at rest, change of distance from axis */
     float share, lower_share;  /* opening of the column over open_rad, own and at the lower margin it meets */
     float gap_mm;              /* from the surface of the eye at rest; negative in the lining */
 } ris_lid_node;
+
+/* A triangle with at least one node of a lid. */
+typedef struct ris_lid_triangle {
+    uint32_t node[3];   /* of the skin */
+    uint32_t number[3]; /* of ris_model.lid, or beyond it: of no lid (below lid_node_count) */
+    ris_vec3 normal;          /* at rest, unit */
+    float rest_mm2;           /* twice its area at rest */
+    float agreement;          /* cosine between it and the mean normal around it at rest */
+} ris_lid_triangle;
 
 /* KA-47. A node of a fat pad rises by rise_mm times the squeeze of the muscle below it: shortening over what is
  * left of its length. */
@@ -176,6 +185,8 @@ typedef struct ris_model {
     uint32_t lid_count; /* 0 without eyes, lids or in the kaehler tissue */
     ris_lid_node *lid;  /* ascending node (lid_count) */
     ris_lid_eye lid_eye[2];
+    uint32_t lid_triangle_count, lid_node_count; /* nodes of these triangles: lid_count, and those around */
+    ris_lid_triangle *lid_triangle;
     float *slide;       /* 0..1: how far muscles move the node along the bone only (node_count) */
     uint32_t fat_count; /* 0 in the kaehler tissue */
     ris_fat_node *fat;

@@ -1,0 +1,139 @@
+/* lid_unfold, the end of lid_pose: no triangle of a lid turns over. Where the lids run together in the corners of the
+ * eye, triangles of half a millimetre lie between nodes that turn and nodes that stay, and what muscles do comes on top. So
+ * a triangle keeps a share of its area, seen along its rest normal turned with the lid, and another, seen along the mean
+ * normal of the triangles around it; if it lacks any, it pushes its nodes apart across that direction. All at once from
+ * the places before, so that left and right mirror each other. */
+#include "sim/rig.h"
+
+#include "model/model_impl.h"
+#include "model/vec3.h"
+
+#include <string.h>
+
+#define LEAST 0.0f         /* of its area at rest that a triangle keeps, seen along its own normal ... */
+#define LEAST_AROUND 0.1f  /* ... and along that of its neighbours, ... */
+#define AGREES 0.4f        /* ... if it agrees with them so far at rest */
+#define MARGIN_GIVES 0.25f /* of what other nodes give way: lids must still meet */
+#define CORNER_GIVES 0.5f  /* and the corners of the eye must stay */
+#define SHARE 0.4f         /* of what is missing, a pass: a node has several triangles */
+#define PASSES 40
+#define ENOUGH_MM2 1e-4f /* missing area that nobody sees, twice */
+
+static ris_vec3 corner(const ris_rig *rig, const ris_lid_triangle *t, int k)
+{
+    return rig->target[t->node[k]];
+}
+
+static ris_vec3 cross_of(const ris_rig *rig, const ris_lid_triangle *t)
+{
+    const ris_vec3 a = corner(rig, t, 0);
+    return v3_cross(v3_sub(corner(rig, t, 1), a), v3_sub(corner(rig, t, 2), a));
+}
+
+/* The rest normal turned as the nodes of the lid turn. */
+static ris_vec3 turned_normal(const ris_rig *rig, const ris_lid_triangle *t)
+{
+    float cosine = 0.0f, sine = 0.0f;
+    for (int k = 0; k < 3; ++k) {
+        const bool turns = t->number[k] < rig->model->lid_count;
+        cosine += turns ? rig->lid_turn[t->number[k]].cosine : 1.0f;
+        sine += turns ? rig->lid_turn[t->number[k]].sine : 0.0f;
+    }
+    const float l = sqrtf(cosine * cosine + sine * sine);
+    cosine /= l;
+    sine /= l;
+    const ris_vec3 n = t->normal;
+    return v3(n.x, cosine * n.y + sine * n.z, cosine * n.z - sine * n.y);
+}
+
+static ris_vec3 mean_normal(const ris_rig *rig, const ris_lid_triangle *t, ris_vec3 cross)
+{
+    ris_vec3 sum = v3_scale(cross, -3.0f);
+    for (int k = 0; k < 3; ++k) {
+        sum = v3_add(sum, rig->lid_around[t->number[k]]);
+    }
+    return v3_unit_or(sum, t->normal);
+}
+
+/* How readily a node gives way. */
+static float mobility(const ris_model *model, uint32_t number)
+{
+    if (number >= model->lid_count) {
+        return 0.0f;
+    }
+    const ris_lid_node *node = &model->lid[number];
+    return node->margin ? MARGIN_GIVES : node->share > 0.0f || node->lining ? 1.0f : CORNER_GIVES;
+}
+
+/* Adds to lid_push what the triangle lacks seen along n; false if it lacks nothing. */
+static bool push_apart(ris_rig *rig, const ris_lid_triangle *t, ris_vec3 cross, ris_vec3 n, float least)
+{
+    const float missing = least * t->rest_mm2 - v3_dot(n, cross);
+    if (!(missing > ENOUGH_MM2)) {
+        return false;
+    }
+    const ris_vec3 a = corner(rig, t, 0), b = corner(rig, t, 1), c = corner(rig, t, 2);
+    const ris_vec3 slope[3] = {v3_cross(v3_sub(b, c), n), v3_cross(v3_sub(c, a), n),
+                               v3_cross(v3_sub(a, b), n)};
+    float mobile[3], square = 0.0f;
+    for (int k = 0; k < 3; ++k) {
+        mobile[k] = mobility(rig->model, t->number[k]);
+        square += mobile[k] * v3_dot(slope[k], slope[k]);
+    }
+    for (int k = 0; k < 3 && square > 0.0f; ++k) {
+        if (t->number[k] < rig->model->lid_count) {
+            ris_vec3 *push = &rig->lid_push[t->number[k]];
+            *push = v3_mad(*push, SHARE * missing * mobile[k] / square, slope[k]);
+        }
+    }
+    return square > 0.0f;
+}
+
+/* Sum of the normals around each node, weighted with area. */
+static void sum_around(ris_rig *rig)
+{
+    const ris_model *model = rig->model;
+    memset(rig->lid_around, 0, model->lid_node_count * sizeof *rig->lid_around);
+    for (uint32_t k = 0; k < model->lid_triangle_count; ++k) {
+        const ris_lid_triangle *t = &model->lid_triangle[k];
+        const ris_vec3 cross = cross_of(rig, t);
+        for (int c = 0; c < 3; ++c) {
+            ris_vec3 *sum = &rig->lid_around[t->number[c]];
+            *sum = v3_add(*sum, cross);
+        }
+    }
+}
+
+static void move_nodes(ris_rig *rig)
+{
+    const ris_model *model = rig->model;
+    for (uint32_t k = 0; k < model->lid_count; ++k) {
+        const ris_vec3 push = rig->lid_push[k];
+        if (push.x != 0.0f || push.y != 0.0f || push.z != 0.0f) {
+            const uint32_t i = model->lid[k].node;
+            rig->target[i] = v3_add(rig->target[i], push);
+            rig->delta[i] = v4_from(v3_add(v4_xyz(rig->delta[i]), push), 0.0f);
+            rig->point[i].a = v4_from(rig->target[i], 0.0f);
+            rig->lid_push[k] = v3(0.0f, 0.0f, 0.0f);
+        }
+    }
+}
+
+void ris__lid_unfold(ris_rig *rig)
+{
+    const ris_model *model = rig->model;
+    bool some = true;
+    for (int pass = 0; pass < PASSES && some; ++pass) {
+        some = false;
+        sum_around(rig);
+        for (uint32_t k = 0; k < model->lid_triangle_count; ++k) {
+            const ris_lid_triangle *t = &model->lid_triangle[k];
+            const ris_vec3 cross = cross_of(rig, t);
+            some = push_apart(rig, t, cross, turned_normal(rig, t), LEAST) || some;
+            if (t->agreement > AGREES) {
+                some = push_apart(rig, t, cross, mean_normal(rig, t, cross), LEAST_AROUND) || some;
+            }
+        }
+        move_nodes(rig);
+    }
+}
