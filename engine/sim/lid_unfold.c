@@ -14,7 +14,7 @@
 #define LEAST_AROUND 0.1f  /* ... and along that of its neighbours, ... */
 #define AGREES 0.4f        /* ... if it agrees with them so far at rest */
 #define MARGIN_GIVES 0.25f /* of what other nodes give way: lids must still meet */
-#define CORNER_GIVES 0.5f  /* and the corners of the eye must stay */
+#define CORNER_GIVES 0.4f  /* and the corners of the eye must stay */
 #define SHARE 0.4f         /* of what is missing, a pass: a node has several triangles */
 #define PASSES 40
 #define ENOUGH_MM2 1e-4f /* missing area that nobody sees, twice */
