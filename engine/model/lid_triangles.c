@@ -1,33 +1,14 @@
-/* Triangles of the lids that must not turn over when lids close and muscles draw: those with a node of a lid. */
+/* Triangles of the lids that must not turn over when lids close and muscles draw: those with a node of a lid, and which
+ * of them share a vertex. */
 #include "model_impl.h"
 #include "vec3.h"
 
 #include <stdlib.h>
 
-/* Number of each node among those of the triangles: lid nodes as they stand in ris_model.lid, then the others. */
-static void number_nodes(ris_model *model, uint32_t *number)
-{
-    for (uint32_t i = 0; i < model->node_count; ++i) {
-        number[i] = UINT32_MAX;
-    }
-    for (uint32_t k = 0; k < model->lid_count; ++k) {
-        number[model->lid[k].node] = k;
-    }
-    model->lid_node_count = model->lid_count;
-    for (uint32_t t = 0; t < model->triangle_count; ++t) {
-        const uint32_t *node = model->triangle + 3 * (size_t)t;
-        bool lid = false;
-        for (int k = 0; k < 3; ++k) {
-            lid = lid || number[node[k]] < model->lid_count;
-        }
-        for (int k = 0; lid && k < 3; ++k) {
-            if (number[node[k]] == UINT32_MAX) {
-                number[node[k]] = model->lid_node_count++;
-            }
-        }
-        model->lid_triangle_count += lid;
-    }
-}
+typedef struct lid_fans {
+    uint32_t *lid;          /* of each node: into ris_model.lid, or UINT32_MAX (node_count) */
+    uint32_t *start, *list; /* triangles at each node, CSR: (node_count + 2), (3 x lid_triangle_count) */
+} lid_fans;
 
 static ris_vec3 cross_at_rest(const ris_model *model, const uint32_t *node)
 {
@@ -36,58 +17,119 @@ static ris_vec3 cross_at_rest(const ris_model *model, const uint32_t *node)
                     v3_sub(v4_xyz(model->rest_position[node[2]]), a));
 }
 
-static void list_triangles(const ris_model *model, const uint32_t *number, ris_vec3 *around)
+static bool has_lid(const uint32_t *lid, const uint32_t *node)
+{
+    return lid[node[0]] != UINT32_MAX || lid[node[1]] != UINT32_MAX || lid[node[2]] != UINT32_MAX;
+}
+
+/* Fills the triangles and, at start[i + 2], how many there are at node i. */
+static void list_triangles(const ris_model *model, const lid_fans *fans)
 {
     ris_lid_triangle *out = model->lid_triangle;
     for (uint32_t t = 0; t < model->triangle_count; ++t) {
         const uint32_t *node = model->triangle + 3 * (size_t)t;
-        if (number[node[0]] >= model->lid_count && number[node[1]] >= model->lid_count &&
-            number[node[2]] >= model->lid_count) {
+        if (!has_lid(fans->lid, node)) {
             continue;
         }
         const ris_vec3 cross = cross_at_rest(model, node);
         for (int k = 0; k < 3; ++k) {
             out->node[k] = node[k];
-            out->number[k] = number[node[k]];
-            around[number[node[k]]] = v3_add(around[number[node[k]]], cross);
+            out->lid[k] = fans->lid[node[k]];
+            ++fans->start[node[k] + 2];
         }
         out->normal = v3_unit_or(cross, v3(0.0f, 0.0f, 0.0f));
         out++->rest_mm2 = v3_length(cross);
     }
 }
 
-/* Cosine between each triangle and those around it. */
-static void measure_agreement(const ris_model *model, const ris_vec3 *around)
+static void list_fans(const ris_model *model, const lid_fans *fans)
 {
-    for (uint32_t k = 0; k < model->lid_triangle_count; ++k) {
-        ris_lid_triangle *t = &model->lid_triangle[k];
-        ris_vec3 sum = v3_scale(t->normal, -3.0f * t->rest_mm2);
-        for (int c = 0; c < 3; ++c) {
-            sum = v3_add(sum, around[t->number[c]]);
-        }
-        t->agreement = v3_dot(t->normal, v3_unit_or(sum, v3(0.0f, 0.0f, 0.0f)));
+    for (uint32_t i = 0; i < model->node_count; ++i) {
+        fans->start[i + 2] += fans->start[i + 1];
     }
+    for (uint32_t t = 0; t < model->lid_triangle_count; ++t) {
+        for (int k = 0; k < 3; ++k) {
+            fans->list[fans->start[model->lid_triangle[t].node[k] + 1]++] = t;
+        }
+    }
+}
+
+/* The triangles that share a vertex with each, once; its agreement with them. */
+static void list_around(ris_model *model, const lid_fans *fans)
+{
+    for (uint32_t t = 0; t < model->lid_triangle_count; ++t) {
+        ris_lid_triangle *triangle = &model->lid_triangle[t];
+        ris_vec3 sum = v3(0.0f, 0.0f, 0.0f);
+        triangle->around_first = model->lid_around_count;
+        for (int k = 0; k < 3; ++k) {
+            for (uint32_t f = fans->start[triangle->node[k]]; f < fans->start[triangle->node[k] + 1]; ++f) {
+                const uint32_t other = fans->list[f];
+                bool known = other == t;
+                for (uint32_t j = triangle->around_first; j < model->lid_around_count && !known; ++j) {
+                    known = model->lid_around[j] == other;
+                }
+                if (!known) {
+                    model->lid_around[model->lid_around_count++] = other;
+                    sum = v3_add(sum, cross_at_rest(model, model->lid_triangle[other].node));
+                }
+            }
+        }
+        triangle->around_end = model->lid_around_count;
+        triangle->agreement = v3_dot(triangle->normal, v3_unit_or(sum, triangle->normal));
+    }
+}
+
+static ris_result list_all(ris_model *model, lid_fans *fans, ris_error *err)
+{
+    const size_t n = model->lid_triangle_count;
+    ris_result result =
+        ris__model_alloc(&model->lid_triangle, n, sizeof *model->lid_triangle, "the lids", err);
+    if (result == RIS_OK) {
+        result = ris__model_alloc(&fans->start, (size_t)model->node_count + 2, sizeof *fans->start,
+                                  "the lids", err);
+    }
+    if (result == RIS_OK) {
+        result = ris__model_alloc(&fans->list, 3 * n, sizeof *fans->list, "the lids", err);
+    }
+    if (result != RIS_OK) {
+        return result;
+    }
+    size_t most = 0;
+    list_triangles(model, fans);
+    list_fans(model, fans);
+    for (uint32_t t = 0; t < n; ++t) {
+        for (int k = 0; k < 3; ++k) {
+            const uint32_t i = model->lid_triangle[t].node[k];
+            most += fans->start[i + 1] - fans->start[i];
+        }
+    }
+    result = ris__model_alloc(&model->lid_around, most, sizeof *model->lid_around, "the lids", err);
+    if (result == RIS_OK) {
+        list_around(model, fans);
+    }
+    return result;
 }
 
 ris_result ris__bake_lid_triangles(ris_bake *bake, ris_error *err)
 {
     ris_model *model = bake->model;
-    uint32_t *number = NULL;
-    ris_vec3 *around = NULL;
-    ris_result result = ris__model_alloc(&number, model->node_count, sizeof *number, "the lids", err);
-    if (result == RIS_OK) {
-        number_nodes(model, number);
-        result = ris__model_alloc(&model->lid_triangle, model->lid_triangle_count,
-                                  sizeof *model->lid_triangle, "the lids", err);
+    lid_fans fans = {0};
+    ris_result result = ris__model_alloc(&fans.lid, model->node_count, sizeof *fans.lid, "the lids", err);
+    if (result != RIS_OK) {
+        return result;
     }
-    if (result == RIS_OK) {
-        result = ris__model_alloc(&around, model->lid_node_count, sizeof *around, "the lids", err);
+    for (uint32_t i = 0; i < model->node_count; ++i) {
+        fans.lid[i] = UINT32_MAX;
     }
-    if (result == RIS_OK) {
-        list_triangles(model, number, around);
-        measure_agreement(model, around);
+    for (uint32_t k = 0; k < model->lid_count; ++k) {
+        fans.lid[model->lid[k].node] = k;
     }
-    free(around);
-    free(number);
+    for (uint32_t t = 0; t < model->triangle_count; ++t) {
+        model->lid_triangle_count += has_lid(fans.lid, model->triangle + 3 * (size_t)t);
+    }
+    result = list_all(model, &fans, err);
+    free(fans.lid);
+    free(fans.start);
+    free(fans.list);
     return result;
 }

@@ -187,6 +187,7 @@ void ris_model_destroy(ris_model *model)
     free(model->contact_other);
     free(model->lid);
     free(model->lid_triangle);
+    free(model->lid_around);
     free(model->lining);
     free(model->lip_close);
     free(model->fat);

@@ -11,8 +11,8 @@
 #include <string.h>
 
 #define LEAST 0.0f         /* of its area at rest that a triangle keeps, seen along its own normal ... */
-#define LEAST_AROUND 0.1f  /* ... and along that of its neighbours, ... */
-#define AGREES 0.4f        /* ... if it agrees with them so far at rest */
+#define LEAST_AROUND 0.18f  /* ... and along that of its neighbours, ... */
+#define MAY_LEAN 0.4f      /* ... or how far it may turn from them, in cosines */
 #define MARGIN_GIVES 0.25f /* of what other nodes give way: lids must still meet */
 #define CORNER_GIVES 0.4f  /* and the corners of the eye must stay */
 #define SHARE 0.4f         /* of what is missing, a pass: a node has several triangles */
@@ -35,9 +35,9 @@ static ris_vec3 turned_normal(const ris_rig *rig, const ris_lid_triangle *t)
 {
     float cosine = 0.0f, sine = 0.0f;
     for (int k = 0; k < 3; ++k) {
-        const bool turns = t->number[k] < rig->model->lid_count;
-        cosine += turns ? rig->lid_turn[t->number[k]].cosine : 1.0f;
-        sine += turns ? rig->lid_turn[t->number[k]].sine : 0.0f;
+        const bool turns = t->lid[k] != UINT32_MAX;
+        cosine += turns ? rig->lid_turn[t->lid[k]].cosine : 1.0f;
+        sine += turns ? rig->lid_turn[t->lid[k]].sine : 0.0f;
     }
     const float l = sqrtf(cosine * cosine + sine * sine);
     cosine /= l;
@@ -46,22 +46,22 @@ static ris_vec3 turned_normal(const ris_rig *rig, const ris_lid_triangle *t)
     return v3(n.x, cosine * n.y + sine * n.z, cosine * n.z - sine * n.y);
 }
 
-static ris_vec3 mean_normal(const ris_rig *rig, const ris_lid_triangle *t, ris_vec3 cross)
+static ris_vec3 mean_normal(const ris_rig *rig, const ris_lid_triangle *t)
 {
-    ris_vec3 sum = v3_scale(cross, -3.0f);
-    for (int k = 0; k < 3; ++k) {
-        sum = v3_add(sum, rig->lid_around[t->number[k]]);
+    ris_vec3 sum = v3(0.0f, 0.0f, 0.0f);
+    for (uint32_t k = t->around_first; k < t->around_end; ++k) {
+        sum = v3_add(sum, rig->lid_cross[rig->model->lid_around[k]]);
     }
     return v3_unit_or(sum, t->normal);
 }
 
 /* How readily a node gives way. */
-static float mobility(const ris_model *model, uint32_t number)
+static float mobility(const ris_model *model, uint32_t lid)
 {
-    if (number >= model->lid_count) {
+    if (lid == UINT32_MAX) {
         return 0.0f;
     }
-    const ris_lid_node *node = &model->lid[number];
+    const ris_lid_node *node = &model->lid[lid];
     return node->margin ? MARGIN_GIVES : node->share > 0.0f || node->lining ? 1.0f : CORNER_GIVES;
 }
 
@@ -77,31 +77,16 @@ static bool push_apart(ris_rig *rig, const ris_lid_triangle *t, ris_vec3 cross, 
                                v3_cross(v3_sub(a, b), n)};
     float mobile[3], square = 0.0f;
     for (int k = 0; k < 3; ++k) {
-        mobile[k] = mobility(rig->model, t->number[k]);
+        mobile[k] = mobility(rig->model, t->lid[k]);
         square += mobile[k] * v3_dot(slope[k], slope[k]);
     }
     for (int k = 0; k < 3 && square > 0.0f; ++k) {
-        if (t->number[k] < rig->model->lid_count) {
-            ris_vec3 *push = &rig->lid_push[t->number[k]];
+        if (t->lid[k] != UINT32_MAX) {
+            ris_vec3 *push = &rig->lid_push[t->lid[k]];
             *push = v3_mad(*push, SHARE * missing * mobile[k] / square, slope[k]);
         }
     }
     return square > 0.0f;
-}
-
-/* Sum of the normals around each node, weighted with area. */
-static void sum_around(ris_rig *rig)
-{
-    const ris_model *model = rig->model;
-    memset(rig->lid_around, 0, model->lid_node_count * sizeof *rig->lid_around);
-    for (uint32_t k = 0; k < model->lid_triangle_count; ++k) {
-        const ris_lid_triangle *t = &model->lid_triangle[k];
-        const ris_vec3 cross = cross_of(rig, t);
-        for (int c = 0; c < 3; ++c) {
-            ris_vec3 *sum = &rig->lid_around[t->number[c]];
-            *sum = v3_add(*sum, cross);
-        }
-    }
 }
 
 static void move_nodes(ris_rig *rig)
@@ -125,14 +110,14 @@ void ris__lid_unfold(ris_rig *rig)
     bool some = true;
     for (int pass = 0; pass < PASSES && some; ++pass) {
         some = false;
-        sum_around(rig);
+        for (uint32_t k = 0; k < model->lid_triangle_count; ++k) {
+            rig->lid_cross[k] = cross_of(rig, &model->lid_triangle[k]);
+        }
         for (uint32_t k = 0; k < model->lid_triangle_count; ++k) {
             const ris_lid_triangle *t = &model->lid_triangle[k];
-            const ris_vec3 cross = cross_of(rig, t);
-            some = push_apart(rig, t, cross, turned_normal(rig, t), LEAST) || some;
-            if (t->agreement > AGREES) {
-                some = push_apart(rig, t, cross, mean_normal(rig, t, cross), LEAST_AROUND) || some;
-            }
+            const float around = f_min(LEAST_AROUND, t->agreement - MAY_LEAN);
+            some = push_apart(rig, t, rig->lid_cross[k], turned_normal(rig, t), LEAST) || some;
+            some = push_apart(rig, t, rig->lid_cross[k], mean_normal(rig, t), around) || some;
         }
         move_nodes(rig);
     }

@@ -42,7 +42,7 @@ ris_result ris__rig_init(ris_rig *rig, const ris_model *model, ris_error *err)
         {&rig->lid_move, model->lid_count, sizeof *rig->lid_move},
         {&rig->lid_turn, model->lid_count, sizeof *rig->lid_turn},
         {&rig->lid_push, model->lid_count, sizeof *rig->lid_push},
-        {&rig->lid_around, model->lid_node_count, sizeof *rig->lid_around},
+        {&rig->lid_cross, model->lid_triangle_count, sizeof *rig->lid_cross},
     };
     for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; ++k) {
         ris_result result =
@@ -96,7 +96,7 @@ void ris__rig_finish(ris_rig *rig)
     free(rig->lid_move);
     free(rig->lid_turn);
     free(rig->lid_push);
-    free(rig->lid_around);
+    free(rig->lid_cross);
     memset(rig, 0, sizeof *rig);
 }
 

@@ -129,8 +129,8 @@ typedef struct ris_rig {
     ris_vec3 *lid_move; /* what muscles and jaw move the nodes of the lids by, mm (lid_count) */
     ris_turn *lid_turn; /* about the lateral axis (lid_count) */
     /* lid_unfold */
-    ris_vec3 *lid_push; /* scratch, zero between ticks, mm (lid_count) */
-    ris_vec3 *lid_around; /* scratch: normals times area around nodes (lid_node_count) */
+    ris_vec3 *lid_push;  /* scratch, zero between ticks, mm (lid_count) */
+    ris_vec3 *lid_cross; /* scratch: normal of each triangle times twice its area (lid_triangle_count) */
     /* contact_pose */
     ris_contact_body body[RIS_CONTACT_BODIES];
     /* head_inertia */

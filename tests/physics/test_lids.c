@@ -3,6 +3,7 @@
  * keep their corners, open wide, follow the gaze, mirror.
  * Rings of the lids are found here from regions and faces, not from the bake. */
 #include "loaded_head.h"
+#include "measure/measure.h"
 #include "risorius/timeline.h"
 
 #define MARGIN_RING 2 /* from the lining of the socket outwards */
@@ -343,6 +344,51 @@ static void the_levator_lifts_the_lid(void **state)
     assert_true(widest_gap() < GAP_MM);
 }
 
+/* Triangles of lips and lids that are turned over, by the measure of `risorius soak`. */
+static double turned_over(const ris_measurer *measurer)
+{
+    ris_finding found[RIS_MEASURE_COUNT];
+    ris_bone_frames frames;
+    for (int bone = 0; bone < RIS_BONE_SKIN; ++bone) {
+        ris_sim_bone_transform(sim, (ris_bone)bone, frames.bone[bone]);
+    }
+    need(ris__measure_pose(measurer, x, &frames, found, NULL, &err));
+    return found[RIS_MEASURE_FLIPPED].value;
+}
+
+/* Not in the corners of the eye, not in the lining that folds under a raised lid, not where muscles draw as well. */
+static void no_triangle_turns_over(void **state)
+{
+    (void)state;
+    static const char *const poses[] = {
+        "lid.upper=1",
+        "lid.upper=0.8,lid.lower=-0.5,eye.pitch=-15",
+        "lid.upper=-1,eye.pitch=30",
+        "eye.pitch=-30,eye.yaw=30",
+        "levator_palpebrae_superioris=1,lid.lower=-1",
+        "lid.upper=0.65,lid.lower=0.7,eye.pitch=23,orbicularis_oculi_palpebral=0.9,orbicularis_oculi_orbital="
+        "1",
+        "lid.upper=-0.4,lid.lower=1,eye.pitch=20,corrugator_supercilii=1,depressor_supercilii=1,"
+        "orbicularis_oculi_palpebral=1,orbicularis_oculi_orbital=1,zygomaticus_major=1"};
+    ris_measurer *measurer = NULL;
+    need(ris__measurer_create(model, &measurer, &err));
+    for (size_t k = 0; k < sizeof poses / sizeof poses[0]; ++k) {
+        need(ris_pose_parse(model, poses[k], pose, &err));
+        settle();
+        const double count = turned_over(measurer);
+        if (count > 0) {
+            fail_msg("%s turns over %g triangles", poses[k], count);
+        }
+    }
+    uint32_t corner = 0; /* control: a corner of the eye drawn across the lid */
+    while (lid[corner] != CORNER) {
+        ++corner;
+    }
+    x[corner].x += x[corner].x > part("eye.L")->pivot.x ? -4.0f : 4.0f;
+    assert_true(turned_over(measurer) > 0);
+    ris__measurer_destroy(measurer);
+}
+
 /* AU7: the ring within the lids narrows the eye from both sides, leaves it open, and moves no other skin. */
 static void the_ring_narrows_both_lids(void **state)
 {
@@ -423,6 +469,7 @@ int main(void)
         cmocka_unit_test(wide_and_gaze),
         cmocka_unit_test(muscles_do_not_open_closed_lids),
         cmocka_unit_test(the_levator_lifts_the_lid),
+        cmocka_unit_test(no_triangle_turns_over),
         cmocka_unit_test(the_ring_narrows_both_lids),
         cmocka_unit_test(one_eye_mirrors),
         cmocka_unit_test(blink),

@@ -113,11 +113,12 @@ typedef struct ris_lid_node {
 
 /* A triangle with at least one node of a lid. */
 typedef struct ris_lid_triangle {
-    uint32_t node[3];   /* of the skin */
-    uint32_t number[3]; /* of ris_model.lid, or beyond it: of no lid (below lid_node_count) */
-    ris_vec3 normal;          /* at rest, unit */
-    float rest_mm2;           /* twice its area at rest */
-    float agreement;          /* cosine between it and the mean normal around it at rest */
+    uint32_t node[3], lid[3]; /* of the skin; into ris_model.lid, UINT32_MAX = of no lid */
+    uint32_t around_first; /* those that share a vertex with it: of ris_model.lid_around, up to around_end */
+    uint32_t around_end;
+    ris_vec3 normal; /* at rest, unit */
+    float rest_mm2;  /* twice its area at rest */
+    float agreement; /* cosine between it and the mean normal around it at rest */
 } ris_lid_triangle;
 
 /* KA-47. A node of a fat pad rises by rise_mm times the squeeze of the muscle below it: shortening over what is
@@ -185,10 +186,11 @@ typedef struct ris_model {
     uint32_t lid_count; /* 0 without eyes, lids or in the kaehler tissue */
     ris_lid_node *lid;  /* ascending node (lid_count) */
     ris_lid_eye lid_eye[2];
-    uint32_t lid_triangle_count, lid_node_count; /* nodes of these triangles: lid_count, and those around */
+    uint32_t lid_triangle_count, lid_around_count;
     ris_lid_triangle *lid_triangle;
-    float *slide;       /* 0..1: how far muscles move the node along the bone only (node_count) */
-    uint32_t fat_count; /* 0 in the kaehler tissue */
+    uint32_t *lid_around; /* triangles around each of them (lid_around_count) */
+    float *slide;         /* 0..1: how far muscles move the node along the bone only (node_count) */
+    uint32_t fat_count;   /* 0 in the kaehler tissue */
     ris_fat_node *fat;
     uint32_t puff_count; /* 0 in the kaehler tissue */
     ris_puff_node *puff;
