@@ -11,7 +11,7 @@
 #include <string.h>
 
 #define LEAST 0.0f         /* of its area at rest that a triangle keeps, seen along its own normal ... */
-#define LEAST_AROUND 0.18f  /* ... and along that of its neighbours, ... */
+#define LEAST_AROUND 0.18f /* ... and along that of its neighbours, ... */
 #define MAY_LEAN 0.4f      /* ... or how far it may turn from them, in cosines */
 #define MARGIN_GIVES 0.25f /* of what other nodes give way: lids must still meet */
 #define CORNER_GIVES 0.4f  /* and the corners of the eye must stay */
