@@ -5,6 +5,10 @@
 
 #include <stdlib.h>
 
+#define KEEPS 0.3f         /* of its area that a triangle keeps, seen along the mean normal around it, ... */
+#define KEEPS_CORNER 0.18f /* ... in the corners of the eye, since closed lids must meet, ... */
+#define MAY_LEAN 0.4f      /* ... or how far it may turn from that, in cosines */
+
 typedef struct lid_fans {
     uint32_t *lid;          /* of each node: into ris_model.lid, or UINT32_MAX (node_count) */
     uint32_t *start, *list; /* triangles at each node, CSR: (node_count + 2), (3 x lid_triangle_count) */
@@ -54,7 +58,18 @@ static void list_fans(const ris_model *model, const lid_fans *fans)
     }
 }
 
-/* The triangles that share a vertex with each, once; its agreement with them. */
+static bool in_corner(const ris_model *model, const ris_lid_triangle *t)
+{
+    for (int k = 0; k < 3; ++k) {
+        const ris_lid_node *node = t->lid[k] != UINT32_MAX ? &model->lid[t->lid[k]] : NULL;
+        if (node && !node->lining && !(node->share > 0.0f)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* The triangles that share a vertex with each, once; what it keeps. */
 static void list_around(ris_model *model, const lid_fans *fans)
 {
     for (uint32_t t = 0; t < model->lid_triangle_count; ++t) {
@@ -75,7 +90,8 @@ static void list_around(ris_model *model, const lid_fans *fans)
             }
         }
         triangle->around_end = model->lid_around_count;
-        triangle->agreement = v3_dot(triangle->normal, v3_unit_or(sum, triangle->normal));
+        const float agreement = v3_dot(triangle->normal, v3_unit_or(sum, triangle->normal));
+        triangle->keeps = f_min(in_corner(model, triangle) ? KEEPS_CORNER : KEEPS, agreement - MAY_LEAN);
     }
 }
 

@@ -1,6 +1,6 @@
 /* lid_unfold, the end of lid_pose: no triangle of a lid turns over. Where the lids run together in the corners of the
  * eye, triangles of half a millimetre lie between nodes that turn and nodes that stay, and what muscles do comes on top. So
- * a triangle keeps a share of its area, seen along its rest normal turned with the lid, and another, seen along the mean
+ * a triangle keeps its side, seen along its rest normal turned with the lid, and a share of its area, seen along the mean
  * normal of the triangles around it; if it lacks any, it pushes its nodes apart across that direction. All at once from
  * the places before, so that left and right mirror each other. */
 #include "sim/rig.h"
@@ -10,9 +10,6 @@
 
 #include <string.h>
 
-#define LEAST 0.0f         /* of its area at rest that a triangle keeps, seen along its own normal ... */
-#define LEAST_AROUND 0.18f /* ... and along that of its neighbours, ... */
-#define MAY_LEAN 0.4f      /* ... or how far it may turn from them, in cosines */
 #define MARGIN_GIVES 0.25f /* of what other nodes give way: lids must still meet */
 #define CORNER_GIVES 0.4f  /* and the corners of the eye must stay */
 #define SHARE 0.4f         /* of what is missing, a pass: a node has several triangles */
@@ -115,9 +112,8 @@ void ris__lid_unfold(ris_rig *rig)
         }
         for (uint32_t k = 0; k < model->lid_triangle_count; ++k) {
             const ris_lid_triangle *t = &model->lid_triangle[k];
-            const float around = f_min(LEAST_AROUND, t->agreement - MAY_LEAN);
-            some = push_apart(rig, t, rig->lid_cross[k], turned_normal(rig, t), LEAST) || some;
-            some = push_apart(rig, t, rig->lid_cross[k], mean_normal(rig, t), around) || some;
+            some = push_apart(rig, t, rig->lid_cross[k], turned_normal(rig, t), 0.0f) || some;
+            some = push_apart(rig, t, rig->lid_cross[k], mean_normal(rig, t), t->keeps) || some;
         }
         move_nodes(rig);
     }

@@ -118,7 +118,7 @@ typedef struct ris_lid_triangle {
     uint32_t around_end;
     ris_vec3 normal; /* at rest, unit */
     float rest_mm2;  /* twice its area at rest */
-    float agreement; /* cosine between it and the mean normal around it at rest */
+    float keeps;     /* share of that which it keeps, seen along the mean normal around it */
 } ris_lid_triangle;
 
 /* KA-47. A node of a fat pad rises by rise_mm times the squeeze of the muscle below it: shortening over what is
