@@ -14,7 +14,8 @@
 #define TILES_MAX 1024
 #define HOLD_S 6.0 /* simulated time a pose may take; a twitching one is shown as it is then */
 #define MARGIN 6
-#define STRIP_ROWS 26u /* of text under a tile */
+#define STRIP_ROWS 26u   /* of text under a tile */
+#define LEAST_TITLE 0.9f /* pixels per font unit; a title that must be smaller is left out */
 
 static const uint8_t paper[3] = {46, 48, 52}, ink[3] = {235, 235, 230}, faint[3] = {170, 172, 176};
 
@@ -221,8 +222,10 @@ static void write_name(sheet_job *sheet, uint32_t index, uint32_t x, uint32_t y)
     if (!sheet->args->hide_names && left < room) {
         const float whole = ris_label_width(1.3f, tile->title);
         const float small = whole > room - left ? 1.3f * (room - left) / whole : 1.3f;
-        ris_label_ink(sheet->rgba, sheet->picture_width, sheet->picture_height, (float)x + MARGIN + left,
-                      (float)y + 0.5f * (float)STRIP_ROWS - 3.5f * small, small, faint, tile->title);
+        if (small > LEAST_TITLE) {
+            ris_label_ink(sheet->rgba, sheet->picture_width, sheet->picture_height, (float)x + MARGIN + left,
+                          (float)y + 0.5f * (float)STRIP_ROWS - 3.5f * small, small, faint, tile->title);
+        }
     }
 }
 

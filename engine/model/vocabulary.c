@@ -95,48 +95,63 @@ bool ris__model_add_word(const ris_model *model, const char *name, float value, 
     return count > 0 || add_word(model, name, value, pose);
 }
 
-static bool is_symmetric(const ris_model *model, const float *pose)
+/* What resolving needs beside the model. */
+typedef struct resolver {
+    ris_model *model;
+    float *pose;      /* scratch (channel_count) */
+    uint32_t *mirror; /* of each channel (channel_count) */
+} resolver;
+
+static bool is_symmetric(const resolver *r)
 {
-    for (uint32_t c = 0; c < model->channel_count; c++) {
-        const float other = pose[ris__model_mirror_channel(model, c)];
-        if (pose[c] != (ris__name_turns_sign(model->channel[c].name) ? -other : other)) {
+    for (uint32_t c = 0; c < r->model->channel_count; c++) {
+        const float other = r->pose[r->mirror[c]];
+        if (r->pose[c] != (ris__name_turns_sign(r->model->channel[c].name) ? -other : other)) {
             return false;
         }
     }
     return true;
 }
 
-static ris_result resolve(ris_model *model, ris_word *word, float *pose, ris_error *err)
+static ris_result resolve(const resolver *r, ris_word *word, ris_error *err)
 {
+    const uint32_t channels = r->model->channel_count;
     uint32_t count = 0;
-    memset(pose, 0, model->channel_count * sizeof *pose);
+    memset(r->pose, 0, channels * sizeof *r->pose);
     for (uint32_t i = 0; i < word->term_count; i++) {
         const char *name = word->term[i].channel;
         const float value = word->term[i].value;
-        word->missing_count += !ris__model_add_channel(model, name, value, pose) &&
-                               !ris__model_add_word(model, name, value, pose);
+        word->missing_count += !ris__model_add_channel(r->model, name, value, r->pose) &&
+                               !ris__model_add_word(r->model, name, value, r->pose);
     }
-    for (uint32_t c = 0; c < model->channel_count; c++) {
-        count += pose[c] != 0;
+    for (uint32_t c = 0; c < channels; c++) {
+        count += r->pose[c] != 0;
     }
     ris_result result = ris__model_alloc(&word->value, count, sizeof *word->value, "a vocabulary", err);
-    for (uint32_t c = 0; c < model->channel_count && result == RIS_OK; c++) {
-        if (pose[c] != 0) {
-            word->value[word->value_count++] = (ris_channel_value){c, pose[c]};
+    for (uint32_t c = 0; c < channels && result == RIS_OK; c++) {
+        if (r->pose[c] != 0) {
+            word->value[word->value_count++] = (ris_channel_value){c, r->pose[c]};
         }
     }
-    word->symmetric = is_symmetric(model, pose);
+    word->symmetric = is_symmetric(r);
     return result;
 }
 
 ris_result ris__vocabulary_resolve(ris_model *model, ris_error *err)
 {
-    float *pose;
-    ris_result result = ris__model_alloc(&pose, model->channel_count, sizeof *pose, "a pose", err);
-    for (uint32_t i = 0; i < model->vocabulary.word_count && result == RIS_OK; i++) {
-        result = resolve(model, &model->vocabulary.word[i], pose, err);
+    resolver r = {.model = model};
+    ris_result result = ris__model_alloc(&r.pose, model->channel_count, sizeof *r.pose, "a pose", err);
+    if (result == RIS_OK) {
+        result = ris__model_alloc(&r.mirror, model->channel_count, sizeof *r.mirror, "a pose", err);
     }
-    free(pose);
+    for (uint32_t c = 0; c < model->channel_count && result == RIS_OK; c++) {
+        r.mirror[c] = ris__model_mirror_channel(model, c);
+    }
+    for (uint32_t i = 0; i < model->vocabulary.word_count && result == RIS_OK; i++) {
+        result = resolve(&r, &model->vocabulary.word[i], err);
+    }
+    free(r.pose);
+    free(r.mirror);
     return result;
 }
 
