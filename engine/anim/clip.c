@@ -287,6 +287,41 @@ const char *ris_clip_label(const ris_clip *clip, uint32_t index, double *out_tim
     return clip->label[index].name;
 }
 
+bool ris__clip_take_ranges(ris_clip *clip, const ris_model *model)
+{
+    const uint32_t count = model->channel_count;
+    clip->minimum = malloc((count + 1) * sizeof *clip->minimum);
+    clip->maximum = malloc((count + 1) * sizeof *clip->maximum);
+    if (!clip->minimum || !clip->maximum) {
+        return false;
+    }
+    clip->channel_count = count;
+    for (uint32_t c = 0; c < count; c++) {
+        clip->minimum[c] = model->channel[c].minimum;
+        clip->maximum[c] = model->channel[c].maximum;
+    }
+    return true;
+}
+
+bool ris__clip_bind(const ris_pose_names *names, ris_track *track, float *scratch, const char **out_unknown)
+{
+    const uint32_t count = names->model->channel_count;
+    for (uint32_t c = 0; c < count; c++) {
+        scratch[c] = 0;
+    }
+    *out_unknown = ris__pose_expand(names, track->target, 1, scratch);
+    track->term = malloc((count + 1) * sizeof *track->term);
+    if (!track->term) {
+        return false;
+    }
+    for (uint32_t c = 0; c < count && !*out_unknown; c++) {
+        if (scratch[c] != 0) {
+            track->term[track->term_count++] = (ris_track_term){c, scratch[c]};
+        }
+    }
+    return true;
+}
+
 void ris_clip_destroy(ris_clip *clip)
 {
     if (!clip) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "anim/idle.h"
+#include "anim/pose_names.h"
 #include "anim/speech.h"
 #include "anim/track.h"
 #include "risorius/timeline.h"
@@ -36,6 +37,11 @@ struct ris_clip {
     ris_label *label;
 };
 
+/* Channel count and ranges of the model's channels. False: no memory. */
+bool ris__clip_take_ranges(ris_clip *clip, const ris_model *model);
+/* track->term: the channels that track->target moves, and by how much; scratch: (channel_count). *out_unknown is NULL, or the
+ * name that is none, and then there are no terms. False: no memory. */
+bool ris__clip_bind(const ris_pose_names *names, ris_track *track, float *scratch, const char **out_unknown);
 /* Makes labels of the key times at which the pose differs from the one labelled before. */
 ris_result ris__clip_make_labels(ris_clip *clip, ris_error *err);
 /* ris_clip_load from memory, which cannot name other files; name stands for the file in errors. */

@@ -91,19 +91,8 @@ static ris_result read_expressions(const ris_json_at *at, ris_clip_reader *r, ri
 static ris_result make_ranges(const ris_json_at *root, ris_clip_reader *r)
 {
     const ris_model *model = r->names.model;
-    uint32_t count = model->channel_count;
-    r->clip->minimum = malloc((count + 1) * sizeof *r->clip->minimum);
-    r->clip->maximum = malloc((count + 1) * sizeof *r->clip->maximum);
-    r->pose = malloc((count + 1) * sizeof *r->pose);
-    if (!r->clip->minimum || !r->clip->maximum || !r->pose) {
-        return ris__clip_no_memory(root, r->err);
-    }
-    r->clip->channel_count = count;
-    for (uint32_t c = 0; c < count; c++) {
-        r->clip->minimum[c] = model->channel[c].minimum;
-        r->clip->maximum[c] = model->channel[c].maximum;
-    }
-    return RIS_OK;
+    r->pose = malloc((model->channel_count + 1) * sizeof *r->pose);
+    return r->pose && ris__clip_take_ranges(r->clip, model) ? RIS_OK : ris__clip_no_memory(root, r->err);
 }
 
 /* Everything in the file; *out_expression is the caller's to free. */

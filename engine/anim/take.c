@@ -1,6 +1,5 @@
 /* A recorded performance as a clip: a track per column that moves, a cubic key per sample (docs/performances.md). */
 #include "anim/clip.h"
-#include "anim/pose_names.h"
 #include "anim/take_clip.h"
 #include "asset/take.h"
 #include "base/file.h"
@@ -37,29 +36,6 @@ static bool moves(const ris_take_table *table, uint32_t column)
     return false;
 }
 
-/* The channels that a column moves; none if this head has none of them. False without memory. */
-static bool bind_terms(binder *b, ris_track *track)
-{
-    const ris_pose_names names = {.model = b->model};
-    const uint32_t count = b->model->channel_count;
-    for (uint32_t c = 0; c < count; c++) {
-        b->pose[c] = 0;
-    }
-    track->term = malloc((count + 1) * sizeof *track->term);
-    if (!track->term) {
-        return false;
-    }
-    if (ris__pose_expand(&names, track->target, 1, b->pose)) {
-        return true;
-    }
-    for (uint32_t c = 0; c < count; c++) {
-        if (b->pose[c] != 0) {
-            track->term[track->term_count++] = (ris_track_term){c, b->pose[c]};
-        }
-    }
-    return true;
-}
-
 static bool make_keys(const ris_take_table *table, uint32_t column, ris_track *track)
 {
     track->key = calloc(table->sample_count, sizeof *track->key);
@@ -77,6 +53,7 @@ static bool make_keys(const ris_take_table *table, uint32_t column, ris_track *t
 
 static bool make_tracks(binder *b)
 {
+    const ris_pose_names names = {.model = b->model};
     ris_clip_layer *layer = &b->clip->layer[0];
     layer->track = calloc(b->table->column_count + 1, sizeof *layer->track);
     if (!layer->track) {
@@ -86,9 +63,10 @@ static bool make_tracks(binder *b)
         if (!moves(b->table, c)) {
             continue;
         }
+        const char *unknown; /* this head has none of it: no terms */
         ris_track *track = &layer->track[layer->track_count++];
         strcpy(track->target, b->table->column[c].name);
-        if (!bind_terms(b, track) || !make_keys(b->table, c, track)) {
+        if (!ris__clip_bind(&names, track, b->pose, &unknown) || !make_keys(b->table, c, track)) {
             return false;
         }
         if (track->term_count == 0) {
@@ -96,7 +74,6 @@ static bool make_tracks(binder *b)
                 strcpy(b->info->first_unknown, track->target);
             }
             ris__track_finish(track);
-            *track = (ris_track){0};
             layer->track_count--;
         }
     }
@@ -166,24 +143,15 @@ static bool make_labels(binder *b)
 
 static bool make_clip(binder *b)
 {
-    const ris_model *model = b->model;
-    const uint32_t count = model->channel_count;
     ris_clip *clip = b->clip = calloc(1, sizeof *clip);
     if (!clip) {
         return false;
     }
     clip->duration_s = fmax(b->table->duration_s, 1e-3);
-    clip->channel_count = count;
-    clip->minimum = malloc((count + 1) * sizeof *clip->minimum);
-    clip->maximum = malloc((count + 1) * sizeof *clip->maximum);
     clip->layer = calloc(1, sizeof *clip->layer);
-    b->pose = malloc((count + 1) * sizeof *b->pose);
-    if (!clip->minimum || !clip->maximum || !clip->layer || !b->pose) {
+    b->pose = malloc((b->model->channel_count + 1) * sizeof *b->pose);
+    if (!clip->layer || !b->pose || !ris__clip_take_ranges(clip, b->model)) {
         return false;
-    }
-    for (uint32_t c = 0; c < count; c++) {
-        clip->minimum[c] = model->channel[c].minimum;
-        clip->maximum[c] = model->channel[c].maximum;
     }
     clip->layer_count = 1;
     clip->layer[0].speed = 1;

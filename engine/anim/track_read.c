@@ -69,29 +69,19 @@ ris_result ris__read_keys(const ris_json_at *at, const ris_key_range *range, ris
 /* The target once, as the channels it moves and by how much. */
 static ris_result read_target(const ris_json_at *at, ris_clip_reader *r, ris_track *track)
 {
-    uint32_t count = r->clip->channel_count;
     char nearest[256];
+    const char *unknown;
     ris_result result = ris__json_text(at, RIS_JSON_REQUIRED, track->target, sizeof track->target, r->err);
     if (result != RIS_OK) {
         return result;
     }
-    for (uint32_t c = 0; c < count; c++) {
-        r->pose[c] = 0;
+    if (!ris__clip_bind(&r->names, track, r->pose, &unknown)) {
+        return ris__clip_no_memory(at, r->err);
     }
-    const char *unknown = ris__pose_expand(&r->names, track->target, 1, r->pose);
     if (unknown) {
         return ris__json_fail(
             at, r->err, "unknown muscle, channel, unit, shape, viseme or expression \"%s\"; nearest: %s",
             unknown, ris__pose_nearest(&r->names, unknown, nearest, sizeof nearest));
-    }
-    track->term = malloc((count + 1) * sizeof *track->term);
-    if (!track->term) {
-        return ris__clip_no_memory(at, r->err);
-    }
-    for (uint32_t c = 0; c < count; c++) {
-        if (r->pose[c] != 0) {
-            track->term[track->term_count++] = (ris_track_term){c, r->pose[c]};
-        }
     }
     return RIS_OK;
 }
