@@ -1,11 +1,12 @@
 /* What a face is to come near to: the vertices of a skin, or landmarks. */
+#include "solve/target.h"
+
 #include "asset/json.h"
 #include "asset/lines.h"
 #include "base/file.h"
 #include "base/text.h"
 #include "model/model_impl.h"
 #include "model/vec3.h"
-#include "risorius/solve.h"
 #include "solve/align.h"
 
 #include <math.h>
@@ -308,32 +309,48 @@ static ris_result read_csv(const ris_model *model, ris_lines *l, ris_target *out
     return r;
 }
 
-ris_result ris_target_load_landmarks(const ris_model *model, const char *path, ris_target *out,
-                                     ris_error *err)
+static bool begins_json(const char *text, size_t size)
 {
-    char *text = NULL;
-    size_t size = 0;
-    *out = (ris_target){.landmarks = true};
-    ris_result r = ris__file_read(path, RIS_MAX_JSON_BYTES, &text, &size, err);
-    if (r) {
-        return r;
+    size_t at = 0;
+    while (at < size && (text[at] == ' ' || text[at] == '\t' || text[at] == '\r' || text[at] == '\n')) {
+        ++at;
     }
-    r = make_room(out, model->head->landmark_count, err);
+    return at < size && text[at] == '{';
+}
+
+ris_result ris__target_parse(const ris_model *model, const char *name, const char *text, size_t size,
+                             ris_target *out, ris_error *err)
+{
+    *out = (ris_target){.landmarks = true};
+    ris_result r = make_room(out, model->head->landmark_count, err);
     out->landmarks = true;
-    if (!r && size > 0 && text[strspn(text, " \t\r\n")] == '{') {
+    if (!r && begins_json(text, size)) {
         ris_json json;
-        r = ris__json_parse(path, text, size, &json, err);
+        r = ris__json_parse(name, text, size, &json, err);
         if (!r) {
             r = read_json(model, &json, out, err);
             ris__json_finish(&json);
         }
     } else if (!r) {
-        ris_lines lines = {.name = path, .next = text, .end = text + size, .err = err};
+        ris_lines lines = {.name = name, .next = text, .end = text + size, .err = err};
         r = read_csv(model, &lines, out);
     }
-    free(text);
     if (r) {
         ris_target_finish(out);
     }
+    return r;
+}
+
+ris_result ris_target_load_landmarks(const ris_model *model, const char *path, ris_target *out,
+                                     ris_error *err)
+{
+    char *text = NULL;
+    size_t size = 0;
+    *out = (ris_target){0};
+    ris_result r = ris__file_read(path, RIS_MAX_JSON_BYTES, &text, &size, err);
+    if (!r) {
+        r = ris__target_parse(model, path, text, size, out, err);
+    }
+    free(text);
     return r;
 }
