@@ -1,7 +1,7 @@
 /* What every sub-command of the `risorius` program shares: its place in the table, options, progress, interruption. */
 #pragma once
 
-#include "risorius/base.h"
+#include "risorius/head.h"
 
 #include <stdio.h>
 
@@ -65,6 +65,8 @@ ris_result cli_number(const char *option, const char *text, double minimum, doub
                       ris_error *err);
 ris_result cli_count(const char *option, const char *text, uint32_t minimum, uint32_t maximum, uint32_t *out,
                      ris_error *err);
+/* The kind of words that --set names: facs, arkit, visemes or expressions. */
+ris_result cli_set(const char *text, ris_word_kind *out, ris_error *err);
 /* "WxH", each side 16..8192 pixels. */
 ris_result cli_size(const char *option, const char *text, uint32_t *out_width, uint32_t *out_height,
                     ris_error *err);

@@ -11,6 +11,7 @@
 typedef struct export_args {
     const char *head, *pose, *at, *out, *set;
     motion_words motion;
+    ris_word_kind kind; /* of set */
     bool parts;
 } export_args;
 
@@ -93,9 +94,6 @@ fail:
     return r;
 }
 
-/* In the order of ris_word_kind. */
-static const char *const set_names[] = {"facs", "arkit", "visemes", "expressions"};
-
 /* One file of the set: a word held at 1, or the neutral head (name NULL). */
 static ris_result write_word(const ris_backend *backend, const export_args *args, const char *name,
                              float *pose, ris_error *err)
@@ -134,7 +132,7 @@ static ris_result write_set(const ris_backend *backend, const ris_cli *cli, cons
     for (uint32_t i = 0; !r && i <= words->word_count; i++) {
         const ris_word *word = i ? &words->word[i - 1] : NULL;
         progress_show(&bar, i, words->word_count + 1);
-        if (!word || strcmp(set_names[word->kind], args->set) == 0) {
+        if (!word || word->kind == args->kind) {
             r = write_word(backend, args, word ? word->name : NULL, pose, err);
             written += !r;
         }
@@ -148,23 +146,15 @@ static ris_result write_set(const ris_backend *backend, const ris_cli *cli, cons
     return r;
 }
 
-static ris_result check_set(const export_args *args, ris_error *err)
+static ris_result check_set(export_args *args, ris_error *err)
 {
-    bool known = false;
-    for (size_t k = 0; k < sizeof set_names / sizeof *set_names; k++) {
-        known = known || strcmp(set_names[k], args->set) == 0;
-    }
-    if (!known) {
-        return ris_fail(err, RIS_ERROR_USAGE,
-                        "--set: expected arkit, facs, visemes or expressions, found '%.40s'", args->set);
-    }
     if (args->pose || motion_file(&args->motion) || args->at) {
         return ris_fail(err, RIS_ERROR_USAGE, "export --set makes its own poses");
     }
-    return RIS_OK;
+    return cli_set(args->set, &args->kind, err);
 }
 
-static ris_result check_args(const export_args *args, ris_error *err)
+static ris_result check_args(export_args *args, ris_error *err)
 {
     if (!args->out) {
         return ris_fail(err, RIS_ERROR_USAGE, "export needs -o FILE.obj, or --set WORDS -o DIR");
@@ -191,7 +181,7 @@ static ris_result run(ris_cli *cli, int argc, char **argv, ris_error *err)
         {"at", 't', "SECONDS", "the moment of the motion", NULL, &args.at, NULL},
         {"output", 'o', "FILE.obj", "the file to write", NULL, &args.out, NULL},
         {"set", 0, "WORDS",
-         "arkit, facs, visemes or expressions: each name held at 1, as DIR/NAME.obj with -o DIR", NULL,
+         "facs, arkit, visemes or expressions: each name held at 1, as DIR/NAME.obj with -o DIR", NULL,
          &args.set, NULL},
         {"parts", 0, NULL, "eyes, teeth, tongue and the rest too", &args.parts, NULL, NULL},
         {0},

@@ -36,6 +36,7 @@ typedef struct sheet_job {
     uint32_t picture_width, picture_height;
     uint64_t seed;
     double value, zoom;
+    ris_word_kind kind; /* of --set */
     studio_views views;
     ris_backend backend;
     ris_studio *studio;
@@ -43,8 +44,6 @@ typedef struct sheet_job {
     float *pose;
     uint8_t *rgba;
 } sheet_job;
-
-static const char *const set_name[RIS_WORD_KINDS] = {"facs", "arkit", "visemes", "expressions"};
 
 static ris_result check_args(sheet_job *sheet, ris_error *err)
 {
@@ -68,6 +67,7 @@ static ris_result check_args(sheet_job *sheet, ris_error *err)
     r = r ? r : cli_count("columns", args->columns ? args->columns : "4", 1, 64, &sheet->columns, err);
     r = r ? r : cli_number("value", args->value ? args->value : "1", -1000, 1000, &sheet->value, err);
     r = r ? r : cli_number("zoom", args->zoom ? args->zoom : "1.3", 0.25, 8, &sheet->zoom, err);
+    r = r || !args->set ? r : cli_set(args->set, &sheet->kind, err);
     sheet->tile_width = width * sheet->views.count;
     if (!r && args->shuffle) {
         uint32_t seed = 0;
@@ -95,19 +95,11 @@ static ris_result add_tile(sheet_job *sheet, const char *pose, const char *name,
 static ris_result add_set(sheet_job *sheet, ris_error *err)
 {
     const ris_vocabulary *vocabulary = &sheet->backend.model->vocabulary;
-    int kind = 0;
-    while (kind < RIS_WORD_KINDS && strcmp(set_name[kind], sheet->args->set) != 0) {
-        kind++;
-    }
-    if (kind == RIS_WORD_KINDS) {
-        return ris_fail(err, RIS_ERROR_USAGE,
-                        "--set: expected facs, arkit, visemes or expressions, found '%s'", sheet->args->set);
-    }
     ris_result r = RIS_OK;
     for (uint32_t i = 0; i < vocabulary->word_count && !r; i++) {
         const ris_word *word = &vocabulary->word[i];
         char pose[TILE_TEXT_SIZE];
-        if ((int)word->kind == kind) {
+        if (word->kind == sheet->kind) {
             snprintf(pose, sizeof pose, "%s=%.9g", word->name, sheet->value);
             r = add_tile(sheet, pose, word->name, word->title, err);
         }

@@ -236,6 +236,19 @@ ris_result cli_count(const char *option, const char *text, uint32_t minimum, uin
     return RIS_OK;
 }
 
+ris_result cli_set(const char *text, ris_word_kind *out, ris_error *err)
+{
+    static const char *const names[RIS_WORD_KINDS] = {"facs", "arkit", "visemes", "expressions"};
+    for (int kind = 0; kind < RIS_WORD_KINDS; kind++) {
+        if (strcmp(names[kind], text) == 0) {
+            *out = (ris_word_kind)kind;
+            return RIS_OK;
+        }
+    }
+    return ris_fail(err, RIS_ERROR_USAGE,
+                    "--set: expected facs, arkit, visemes or expressions, found '%.40s'", text);
+}
+
 ris_result cli_size(const char *option, const char *text, uint32_t *out_width, uint32_t *out_height,
                     ris_error *err)
 {

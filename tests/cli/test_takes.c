@@ -111,7 +111,7 @@ static void a_set_is_exported(void **state)
     char path[COMMAND_PATH_SIZE + 32];
     (void)state;
     snprintf(path, sizeof path, "%s/set", folder);
-    expect(2, "expected arkit, facs, visemes or expressions, found 'shapes'",
+    expect(2, "expected facs, arkit, visemes or expressions, found 'shapes'",
            "export " HEAD "--set shapes -o '%s'", path);
     expect(2, "makes its own poses", "export " HEAD "--set arkit --pose jaw.open=1 -o '%s'", path);
     expect(0, NULL, "export " HEAD "--set visemes -o '%s'", path);

@@ -157,6 +157,8 @@ static void a_sheet_needs_its_words(void **state)
     expect("sheet " HEAD " -o x.png --set facs --poses AU1=1", 2, "not both");
     expect("sheet " HEAD " -o x.png --set facs --hide-names", 2, "--hide-names needs --key FILE");
     expect("sheet " HEAD " -o x.png --set facs --key x.png", 2, "named as two outputs");
+    expect("sheet " HEAD " -o x.png --set ekman", 2,
+           "expected facs, arkit, visemes or expressions, found 'ekman'");
     expect("sheet " HEAD " -o x.png --set facs --zoom 0", 2, "zoom");
     expect("sheet " HEAD " -o x.png --set facs --shuffle x", 2, "shuffle");
 }
