@@ -26,7 +26,7 @@ typedef struct cli_command {
 extern const cli_command cmd_devices, cmd_info, cmd_render, cmd_export, cmd_compare, cmd_bench, cmd_soak,
     cmd_score, cmd_validate, cmd_view, cmd_plate, cmd_sheet;
 
-extern const cli_command cmd_solve;
+extern const cli_command cmd_pairs, cmd_solve;
 
 #define CLI_LIST_SIZE 8
 

@@ -13,9 +13,9 @@
 #define PATH_MAX 4096
 #endif
 
-static const cli_command *const commands[] = {&cmd_devices,  &cmd_solve,   &cmd_info,  &cmd_view, &cmd_render,
-                                              &cmd_export,   &cmd_compare, &cmd_bench, &cmd_soak, &cmd_score,
-                                              &cmd_validate, &cmd_plate,   &cmd_sheet, NULL};
+static const cli_command *const commands[] = {
+    &cmd_devices, &cmd_solve, &cmd_pairs, &cmd_info,     &cmd_view,  &cmd_render, &cmd_export, &cmd_compare,
+    &cmd_bench,   &cmd_soak,  &cmd_score, &cmd_validate, &cmd_plate, &cmd_sheet,  NULL};
 
 /* Programs of this project that are found as risorius-<verb>. */
 static const struct {

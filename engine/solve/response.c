@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define TICKS 4
+#define TICKS 3
 
 static const ris_state kept[4] = {RIS_STATE_POSITION, RIS_STATE_VELOCITY_HALF, RIS_STATE_VELOCITY_PREV,
                                   RIS_STATE_NORMAL};

@@ -16,7 +16,11 @@
 #define LAST_STEP 0.1 /* at the pose found */
 #define LITTLE 0.1
 #define HOLD_S 4.0
+#define GLANCE_S                                                                                             \
+    0.2 /* a hold while the face is still farther than GLANCE_MM: what moves later is less than what is left */
+#define GLANCE_MM 0.1
 #define TRIES 6
+#define ALL_EVERY 4  /* iterations: all columns, else those of what acts */
 #define STALLED 0.01 /* an iteration that gains less than this share is one of STALLS that end the search */
 #define STALLS 2
 
@@ -153,10 +157,11 @@ static double cost(const ris_solver *s, double rms_mm, const double *u)
 }
 
 /* Holds a pose from where sim[0] stands, and looks. */
-static ris_result hold(ris_solver *s, const float *pose, float *seen, bool *out_rest, ris_error *err)
+static ris_result hold(ris_solver *s, const float *pose, double limit_s, float *seen, bool *out_rest,
+                       ris_error *err)
 {
     ris_hold held = {0};
-    ris_result r = ris_sim_hold(s->def->sim[0], pose, HOLD_S, &held, err);
+    ris_result r = ris_sim_hold(s->def->sim[0], pose, limit_s, &held, err);
     ++s->holds;
     if (!r) {
         r = ris_sim_read(s->def->sim[0], RIS_STATE_POSITION, s->position, err);
@@ -216,11 +221,11 @@ void ris__solver_choose_step(ris_solver *s, uint32_t k, double size)
 }
 
 /* At a fork the side that helps, or the one that harms less. */
-static ris_result respond(ris_solver *s, ris_error *err)
+static ris_result respond(ris_solver *s, bool all, ris_error *err)
 {
     bool any = false;
-    for (uint32_t k = 0; k < s->n; ++k) {
-        s->wanted[k] = !s->frozen[k];
+    for (uint32_t k = 0; k < s->n; ++k) { /* what does not act answers now much as it did a little before */
+        s->wanted[k] = !s->frozen[k] && (all || s->u[k] != 0);
     }
     ris_result r = ris__solver_respond(s, s->wanted, err);
     for (uint32_t k = 0; k < s->n && !r; ++k) {
@@ -240,9 +245,9 @@ static ris_result respond(ris_solver *s, ris_error *err)
     return r;
 }
 
-ris_result ris__solver_linearise(ris_solver *s, ris_error *err)
+ris_result ris__solver_linearise(ris_solver *s, bool all, ris_error *err)
 {
-    ris_result r = respond(s, err);
+    ris_result r = respond(s, all, err);
     for (uint32_t a = 0; !r && a < s->n; ++a) {
         for (uint32_t b = 0; b <= a; ++b) {
             s->gram[(size_t)a * s->n + b] = s->gram[(size_t)b * s->n + a] =
@@ -278,7 +283,8 @@ ris_result ris__solver_try(ris_solver *s, double *out_rms, ris_error *err)
         s->tried_u[k] = fmin(fmax(s->tried_u[k], s->knob[k].low), s->knob[k].high);
     }
     ris__solver_pose(s, s->tried_u, s->tried_pose);
-    ris_result r = hold(s, s->tried_pose, s->tried_seen, &rest, err);
+    ris_result r =
+        hold(s, s->tried_pose, s->rms_mm > GLANCE_MM ? GLANCE_S : HOLD_S, s->tried_seen, &rest, err);
     *out_rms = r ? 0 : measure(s->target, s->tried_seen, NULL, NULL);
     return r;
 }
@@ -334,7 +340,7 @@ static ris_result start(ris_solver *s, ris_solve_result *out, ris_error *err)
     }
     ris_result r = ris_sim_reset(s->def->sim[0], err);
     if (!r) {
-        r = hold(s, s->pose, s->seen, &rest, err);
+        r = hold(s, s->pose, HOLD_S, s->seen, &rest, err);
     }
     if (!r) {
         r = ris__snapshot_take(s->def->sim[0], &s->now, err);
@@ -354,7 +360,7 @@ static ris_result search(ris_solver *s, ris_error *err)
     for (uint32_t stalls = 0; !r && s->iteration < def->iteration_limit && stalls < STALLS && gain > 0 &&
                               s->rms_mm > def->enough_mm;
          ++s->iteration) {
-        r = ris__solver_linearise(s, err);
+        r = ris__solver_linearise(s, s->iteration % ALL_EVERY == 0 || stalls, err);
         if (!r) {
             r = ris__solver_improve(s, &gain, err);
         }
@@ -376,14 +382,14 @@ static ris_result finish(ris_solver *s, ris_solve_result *out, ris_control_found
     ris__solver_pose(s, s->u, s->pose);
     ris_result r = ris_sim_reset(s->def->sim[0], err);
     if (!r) {
-        r = hold(s, s->pose, s->seen, &out->at_rest, err);
+        r = hold(s, s->pose, HOLD_S, s->seen, &out->at_rest, err);
     }
     if (!r) {
         out->rms_mm = s->rms_mm = measure(s->target, s->seen, &out->max_mm, &out->worst);
         r = ris__snapshot_take(s->def->sim[0], &s->now, err);
     }
     if (!r) {
-        r = ris__solver_linearise(s, err);
+        r = ris__solver_linearise(s, true, err);
     }
     if (!r) {
         ris__independent_shares(s->n, s->gram, s->d, s->work);

@@ -51,8 +51,8 @@ void ris__snapshot_free(ris_snapshot *snapshot);
 /* A secant that stays in the range; up unless it cannot or the last one went down; of a little, to rest: a muscle's first tenth
  * is unlike the rest of its range. */
 void ris__solver_choose_step(ris_solver *solver, uint32_t control, double size);
-/* Columns and normal equations at u, of what is not frozen. */
-ris_result ris__solver_linearise(ris_solver *solver, ris_error *err);
+/* Columns and normal equations at u, of what is not frozen: all anew, or those of what acts. */
+ris_result ris__solver_linearise(ris_solver *solver, bool all, ris_error *err);
 /* Holds the pose of tried_u from where sim[0] stands and looks: tried_pose, tried_seen. *out_rms in mm. */
 ris_result ris__solver_try(ris_solver *solver, double *out_rms, ris_error *err);
 /* What was tried becomes the state. */

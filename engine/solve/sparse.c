@@ -170,7 +170,7 @@ static ris_result repair(ris_solver *s, const thinning *t, uint32_t left, double
     s->damping = 1e-4;
     for (int k = 0; !r && k < REPAIRS && gain > 0 && s->rms_mm > limit_mm; ++k) {
         ++s->iteration;
-        r = ris__solver_linearise(s, err);
+        r = ris__solver_linearise(s, false, err);
         if (!r) {
             r = ris__solver_improve(s, &gain, err);
         }
@@ -198,7 +198,7 @@ ris_result ris__solver_thin_out(ris_solver *s, ris_error *err)
                 t.index[count++] = k;
             }
         }
-        r = ris__solver_linearise(s, err);
+        r = ris__solver_linearise(s, false, err);
         const uint32_t left = r ? 0 : guess(s, &t, count, slack);
         if (r || left == count) {
             break;

@@ -15,8 +15,8 @@
 
 static run_result run;
 
-static const char *const commands[] = {"devices", "info", "view",  "render",   "export", "compare",
-                                       "bench",   "soak", "solve", "validate", "plate",  "sheet"};
+static const char *const commands[] = {"devices", "info",  "view",  "render",   "export", "compare", "bench",
+                                       "soak",    "solve", "pairs", "validate", "plate",  "sheet"};
 
 static void expect(const char *line, int code, const char *in_err)
 {
