@@ -177,7 +177,7 @@ static ris_result parse(ris_cli *cli, int argc, char **argv, solve_args *args, r
         {"output", 'o', "FILE", "write the pose: .json a clip of one key, else words for --pose", NULL,
          &args->out, NULL},
         {"channels", 'c', "LIST",
-         "what may act: muscles (with jaw and lips' protrusion; the default), all, or names: "
+         "what may act: muscles (with jaw and lips' protrusion; the default), all, au, arkit, or names: "
          "name[,name...], eye.*",
          NULL, &args->channels, NULL},
         {"landmarks", 'l', NULL, "of an OBJ only the head's landmarks count", &args->landmarks, NULL, NULL},

@@ -24,7 +24,7 @@ typedef struct solve_run {
     float *pose; /* (channel_count) */
 } solve_run;
 
-/* The controls that --channels names: NULL, "muscles", "all" or a list. RIS_ERROR_USAGE for an unknown name. */
+/* The controls that --channels names: NULL, groups ("muscles", "all", "au", "arkit") or names. RIS_ERROR_USAGE for an unknown name. */
 ris_result solve_controls(solve_run *run, ris_error *err);
 
 /* "name=value,..." of what was found, "neutral" rests left out; malloced, the caller frees; NULL without memory. */
