@@ -16,9 +16,8 @@
 #define LAST_STEP 0.1 /* at the pose found */
 #define LITTLE 0.1
 #define HOLD_S 4.0
-#define GLANCE_S                                                                                             \
-    0.2 /* a hold while the face is still farther than GLANCE_MM: what moves later is less than what is left */
-#define GLANCE_MM 0.1
+#define GLANCE_MM 0.1 /* while the face is farther, what moves late is less than what is left: */
+#define GLANCE_S 0.2  /* then it is held for so long only */
 #define TRIES 6
 #define ALL_EVERY 4  /* iterations: all columns, else those of what acts */
 #define STALLED 0.01 /* an iteration that gains less than this share is one of STALLS that end the search */
@@ -77,15 +76,15 @@ static ris_result open_solver(ris_solver *s, ris_error *err)
         {&s->frozen, n, sizeof *s->frozen},
         {&s->pose, channels, sizeof *s->pose},
         {&s->seen, rows, sizeof *s->seen},
-        {&s->column, n * rows, sizeof *s->column},
-        {&s->gram, n * n, sizeof *s->gram},
+        {&s->column, 2 * n * rows, sizeof *s->column},
+        {&s->gram, 4 * n * n, sizeof *s->gram},
         {&s->damped, n * n, sizeof *s->damped},
-        {&s->work, n * n + 2 * n, sizeof *s->work},
+        {&s->work, 4 * n * n + 2 * n, sizeof *s->work},
         {&s->g, n, sizeof *s->g},
         {&s->right, n, sizeof *s->right},
         {&s->low, n, sizeof *s->low},
         {&s->high, n, sizeof *s->high},
-        {&s->d, n, sizeof *s->d},
+        {&s->d, 2 * n, sizeof *s->d},
         {&s->tried_u, n, sizeof *s->tried_u},
         {&s->tried_seen, rows, sizeof *s->tried_seen},
         {&s->tried_pose, channels, sizeof *s->tried_pose},
@@ -285,6 +284,7 @@ ris_result ris__solver_try(ris_solver *s, double *out_rms, ris_error *err)
     ris__solver_pose(s, s->tried_u, s->tried_pose);
     ris_result r =
         hold(s, s->tried_pose, s->rms_mm > GLANCE_MM ? GLANCE_S : HOLD_S, s->tried_seen, &rest, err);
+    s->glanced = !rest && s->rms_mm > GLANCE_MM;
     *out_rms = r ? 0 : measure(s->target, s->tried_seen, NULL, NULL);
     return r;
 }
@@ -306,6 +306,7 @@ ris_result ris__solver_keep(ris_solver *s, ris_error *err)
 ris_result ris__solver_improve(ris_solver *s, double *out_gain, ris_error *err)
 {
     const double before = cost(s, s->rms_mm, s->u);
+    const bool glanced = s->glanced;
     ris_result r = RIS_OK;
     *out_gain = 0;
     for (int try = 0; !r && try < TRIES; ++try) {
@@ -324,6 +325,7 @@ ris_result ris__solver_improve(ris_solver *s, double *out_gain, ris_error *err)
             return ris__solver_keep(s, err);
         }
         s->damping = fmax(s->damping * 8, 1e-3);
+        s->glanced = glanced;
         if (!r) {
             r = ris__snapshot_put(s->def->sim[0], &s->now, err);
         }
@@ -352,6 +354,19 @@ static ris_result start(ris_solver *s, ris_solve_result *out, ris_error *err)
     return r;
 }
 
+/* Lets a face that was only glanced at come to rest, so that steps are judged by where it ends. */
+static ris_result settle(ris_solver *s, ris_error *err)
+{
+    bool rest;
+    s->glanced = false;
+    ris_result r = hold(s, s->pose, HOLD_S, s->seen, &rest, err);
+    if (!r) {
+        s->rms_mm = measure(s->target, s->seen, NULL, NULL);
+        r = ris__snapshot_take(s->def->sim[0], &s->now, err);
+    }
+    return r;
+}
+
 static ris_result search(ris_solver *s, ris_error *err)
 {
     const ris_solve_def *def = s->def;
@@ -364,7 +379,49 @@ static ris_result search(ris_solver *s, ris_error *err)
         if (!r) {
             r = ris__solver_improve(s, &gain, err);
         }
+        if (!r && s->glanced && (gain == 0 || s->rms_mm <= GLANCE_MM)) {
+            r = settle(s, err);
+            gain = 1;
+        }
         stalls = gain < STALLED ? stalls + 1 : 0;
+    }
+    return r;
+}
+
+/* Parts of the columns that no mixture of the others gives, into d, and their lengths into g. Of a control with two sides at
+ * rest both count: the side that was left closed may be what another control does. */
+static ris_result find_shares(ris_solver *s, ris_error *err)
+{
+    uint32_t count = s->n;
+    ris_result r = ris__solver_linearise(s, true, err);
+    for (uint32_t k = 0; k < s->n; ++k) {
+        const double other = s->u[k] - s->step[k];
+        s->wanted[k] = is_at_fork(s, k) && other <= s->knob[k].high && other >= s->knob[k].low;
+        if (s->wanted[k]) {
+            memcpy(s->column + (size_t)count++ * s->rows, s->column + (size_t)k * s->rows,
+                   s->rows * sizeof *s->column);
+            s->step[k] = -s->step[k];
+        }
+    }
+    if (!r && count > s->n) {
+        r = ris__solver_respond(s, s->wanted, err);
+    }
+    for (uint32_t a = 0; !r && a < count; ++a) {
+        for (uint32_t b = 0; b <= a; ++b) {
+            s->gram[(size_t)a * count + b] = s->gram[(size_t)b * count + a] =
+                dot_column(s, a, b) / s->target->count;
+        }
+    }
+    if (!r) {
+        ris__independent_shares(count, s->gram, s->d, s->work);
+    }
+    for (uint32_t k = 0, side = s->n; !r && k < s->n; ++k) {
+        s->g[k] = sqrt(s->gram[(size_t)k * count + k]);
+        if (s->wanted[k]) {
+            s->d[k] = fmin(s->d[k], s->d[side]);
+            s->g[k] = fmin(s->g[k], sqrt(s->gram[(size_t)side * count + side]));
+            ++side;
+        }
     }
     return r;
 }
@@ -389,14 +446,12 @@ static ris_result finish(ris_solver *s, ris_solve_result *out, ris_control_found
         r = ris__snapshot_take(s->def->sim[0], &s->now, err);
     }
     if (!r) {
-        r = ris__solver_linearise(s, true, err);
+        r = find_shares(s, err);
     }
     if (!r) {
-        ris__independent_shares(s->n, s->gram, s->d, s->work);
         for (uint32_t k = 0; k < s->n; ++k) {
-            found[k] = (ris_control_found){.value = (float)(s->u[k] * s->knob[k].scale),
-                                           .reach_mm = sqrt(s->gram[(size_t)k * s->n + k]),
-                                           .share = s->d[k]};
+            found[k] = (ris_control_found){
+                .value = (float)(s->u[k] * s->knob[k].scale), .reach_mm = s->g[k], .share = s->d[k]};
         }
         memcpy(pose, s->pose, s->model->channel_count * sizeof *pose);
     }

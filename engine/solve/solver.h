@@ -24,13 +24,14 @@ typedef struct ris_solver {
     float *pose;      /* (channel_count) */
     ris_snapshot now; /* sim[0] at u */
     float *seen;      /* what the target sees at u (rows) */
-    float *column;    /* response per unit of u at u (n x rows) */
+    float *column;    /* response per unit of u at u (n x rows), and room for as many */
     double *step;     /* secant step of each column in u, with sign (n) */
     bool *frozen;     /* stays as it is (n) */
     uint32_t holds, iteration;
     double rms_mm, damping;
+    bool glanced; /* the face was not held until at rest */
     /* the normal equations of a step, per point of the target, and what solves them */
-    double *gram, *damped, *work;                 /* (n x n); work: n^2 + 2 n */
+    double *gram, *damped, *work; /* gram: room for 2 n x 2 n; damped: n x n; work: 4 n^2 + 2 n */
     double *g, *right, *low, *high, *d, *tried_u; /* (n) */
     bool *wanted;                                 /* (n) */
     float *tried_seen, *tried_pose;               /* (rows), (channel_count) */
