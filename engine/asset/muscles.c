@@ -42,6 +42,7 @@ static const char *const record_keys[] = {"name",
                                           "puff_mm",
                                           "puff_radius_mm",
                                           "held_at",
+                                          "strength",
                                           NULL};
 
 static double distance(const ris_vec3 *a, const ris_vec3 *b)
@@ -219,7 +220,7 @@ static ris_result read_numbers(const ris_json_at *at, ris_muscle_def *def, ris_e
     ris_json_at radius = ris__json_key(at, "radius_mm"), start = ris__json_key(at, "insertion_start");
     ris_json_at drag = ris__json_key(at, "lip_drag_power"), gain = ris__json_key(at, "gain");
     ris_json_at puff = ris__json_key(at, "puff_mm"), puff_radius = ris__json_key(at, "puff_radius_mm");
-    ris_json_at held = ris__json_key(at, "held_at");
+    ris_json_at held = ris__json_key(at, "held_at"), strength = ris__json_key(at, "strength");
     ris_json_at fat = ris__json_key(at, "fat"), fat_radius = ris__json_key(at, "fat_radius_mm");
     ris_result result;
     def->thickness_mm[0] = 2;
@@ -228,12 +229,14 @@ static ris_result read_numbers(const ris_json_at *at, ris_muscle_def *def, ris_e
     def->radius_mm = 8;
     def->insertion_start = 0.5f;
     def->gain = 1.2f;
+    def->strength = 1;
     def->fat_radius_mm = 15;
     def->puff_radius_mm = 20;
     if ((result = ris__json_floats(&thickness, RIS_JSON_OPTIONAL, 2, 0.01, 50, def->thickness_mm, err)) ||
         (result = ris__json_float(&shortening, RIS_JSON_OPTIONAL, 0, 0.30, &def->max_shortening, err)) ||
         (result = ris__json_float(&radius, RIS_JSON_OPTIONAL, 0.1, 100, &def->radius_mm, err)) ||
         (result = ris__json_float(&start, RIS_JSON_OPTIONAL, 0, 0.99, &def->insertion_start, err)) ||
+        (result = ris__json_float(&strength, RIS_JSON_OPTIONAL, 0.1, 10, &def->strength, err)) ||
         (result = ris__json_float(&held, RIS_JSON_OPTIONAL, 0, 0.9, &def->held_at, err)) ||
         (result = ris__json_float(&fat, RIS_JSON_OPTIONAL, 0, 10, &def->fat, err)) ||
         (result = ris__json_float(&fat_radius, RIS_JSON_OPTIONAL, 0.1, 100, &def->fat_radius_mm, err)) ||

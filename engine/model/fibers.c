@@ -114,6 +114,7 @@ static ris_result make_muscle(ris_bake *bake, uint32_t m, ris_error *err)
     muscle->lip_drag_power = def->lip_drag_power;
     muscle->radius_mm = def->radius_mm;
     muscle->gain = def->gain;
+    muscle->strength = def->strength > 0.0f ? def->strength : 1.0f;
     muscle->axis[0] = def->axis[0];
     muscle->axis[1] = def->axis[1];
     muscle->def = def;

@@ -2,7 +2,8 @@
  * anchors of the tick.
  *
  * Default tissue (docs/physics.md), node at rest X, bindings (muscle, weight w, activity s in 0..1):
- *     P      = X + sum w s delta / max(1, sum w s)          delta blended over the segments of the binding
+ *     P      = X + min(1, sum w s) sum f w s delta / sum f w s
+ *              delta blended over the segments of the binding, f the muscle's strength
  *              (a ring that a corner of the mouth drags counts with t^p below the bar, t = 1 at the corner,
  *              0 at the midline); the lining of the mouth goes with the lips before it
  *     target = P + jaw_weight (J(P) - P),  normal = unit(n + jaw_weight (J n - n))
@@ -93,7 +94,8 @@ static float dragged(const ris_rig *rig, const ris_binding *binding, float *full
 
 /* Adds what one binding moves its node by, and the weight it does so with. A ring that is only dragged weighs
  * little in the middle of its lip, where other muscles rule. */
-static void add_binding(const ris_rig *rig, const ris_binding *binding, ris_vec3 *sum, float *total)
+static void add_binding(const ris_rig *rig, const ris_binding *binding, ris_vec3 *sum, float *total,
+                        float *strong)
 {
     const ris_model *model = rig->model;
     const ris_muscle *muscle = &model->muscle[binding->muscle];
@@ -110,19 +112,22 @@ static void add_binding(const ris_rig *rig, const ris_binding *binding, ris_vec3
         const ris_attach *attach = &model->attach[binding->first_attach + k];
         delta = v3_mad(delta, attach->share, v3_sub(attached_point(rig, muscle, attach), attach->rest));
     }
-    *sum = v3_mad(*sum, binding->weight * activity, delta);
+    const float strength = muscle->strength;
+    *sum = v3_mad(*sum, strength * (binding->weight * activity), delta);
     *total += binding->weight * weight;
+    *strong += strength * (binding->weight * weight);
 }
 
 static ris_vec3 muscle_move(const ris_rig *rig, uint32_t i)
 {
     const ris_model *model = rig->model;
     ris_vec3 sum = {0};
-    float total = 0.0f;
+    float total = 0.0f, strong = 0.0f;
     for (uint32_t b = model->binding_start[i]; b < model->binding_start[i + 1]; ++b) {
-        add_binding(rig, &model->binding[b], &sum, &total);
+        add_binding(rig, &model->binding[b], &sum, &total, &strong);
     }
-    const ris_vec3 move = v3_scale(sum, 1.0f / f_max(total, 1.0f)), normal = v4_xyz(model->rest_normal[i]);
+    const float share = total > 0.0f ? strong / f_min(total, 1.0f) : 1.0f;
+    const ris_vec3 move = v3_scale(sum, 1.0f / share), normal = v4_xyz(model->rest_normal[i]);
     if (!model->slide) {
         return move;
     }

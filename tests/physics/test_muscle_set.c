@@ -39,6 +39,16 @@ static int close_head(void **state)
     return 0;
 }
 
+/* Holds `pose` as it stands. */
+static void settle_pose(void)
+{
+    need(ris_sim_reset(sim, &err));
+    for (int i = 0; i < 20; ++i) {
+        need(ris_sim_tick(sim, pose, &err));
+    }
+    need(ris_sim_read(sim, RIS_STATE_POSITION, x, &err));
+}
+
 /* Muscles are the first channels. The slowest mode decays in 0.1 s, six ticks. */
 static void hold(uint32_t muscle, float activation, int ticks)
 {
@@ -232,6 +242,33 @@ static void muscles_do_what_they_are_named_for(void **state)
     }
 }
 
+/* AU1+4: frontalis prevails over the depressors, the corrugators still draw the brows together. Control: the depressors
+ * alone lower. */
+static void raised_brows_come_together(void **state)
+{
+    (void)state;
+    static const char *const frown[] = {"corrugator_supercilii", "depressor_supercilii", "procerus"};
+    const ris_vec3 head = {15, 40, 95}, middle = {25, 40, 91};
+    memset(pose, 0, model->channel_count * sizeof *pose);
+    for (int on = 0; on < 2; ++on) {
+        for (int side = 0; side < 2; ++side) {
+            char name[RIS_NAME_SIZE];
+            for (size_t k = 0; k < 3; ++k) {
+                snprintf(name, sizeof name, k == 2 ? "%s" : "%s.%c", frown[k], side ? 'R' : 'L');
+                pose[channel_index(name)] = 1;
+            }
+            snprintf(name, sizeof name, "frontalis_inner.%c", side ? 'R' : 'L');
+            pose[channel_index(name)] = (float)on;
+        }
+        settle_pose();
+        const ris_vec3 d = motion_at(head), m = motion_at(middle);
+        print_message("%s: head %.2f %.2f, middle %.2f %.2f\n", on ? "AU1+4" : "AU4", (double)d.x,
+                      (double)d.y, (double)m.x, (double)m.y);
+        assert_true(on ? d.y > 1.0f : d.y < -1.0f);
+        assert_true(m.x < -0.8f);
+    }
+}
+
 /* Table 7.1 of the thesis and what FACS needs beyond it; a synonym (docs/file-formats.md) is no second
  * muscle. */
 static void the_set_is_whole(void **state)
@@ -322,6 +359,7 @@ int main(void)
         cmocka_unit_test(sides_mirror),
         cmocka_unit_test(linear_muscles_shorten_as_told),
         cmocka_unit_test(muscles_do_what_they_are_named_for),
+        cmocka_unit_test(raised_brows_come_together),
         cmocka_unit_test(the_set_is_whole),
         cmocka_unit_test(every_muscle_has_its_anatomy),
         cmocka_unit_test(the_documentation_agrees),

@@ -130,8 +130,8 @@ static float nasolabial(const place *at)
             way = (float)k + t;
         }
     }
-    const float a = nearest / (2.6f * s);
-    return 0.9f * expf(-a * a) * ris_paint_step(0, 1.2f, way) * ris_paint_step(4, 2.2f, way);
+    const float a = nearest / (3.0f * s);
+    return 0.8f * expf(-a * a) * ris_paint_step(0, 2.1f, way) * ris_paint_step(4, 2.2f, way);
 }
 
 /* Arcs beside the corner of the mouth, upright lines above and below the lips, the pebbles of mentalis. */

@@ -58,6 +58,7 @@ typedef struct ris_muscle_def {
     float max_shortening;  /* contraction at activation 1, 0..0.30; may be 0 for a passive carrier */
     float radius_mm;       /* influence beyond the muscle depth (R of docs/physics.md) */
     float insertion_start; /* t0 of the insertion profile along the fibre, 0..1 */
+    float strength;        /* its say where muscles pull the same skin different ways; 0 counts as 1 */
     float held_at;         /* share of the fibre's length that stays when it shortens; 0 = the fixed end */
     float lip_drag_power; /* > 0: the end pulls the lip corner, drag along the oris is t^power; 0 = no pull */
     float gain;           /* factor on the weight (docs/physics.md) */

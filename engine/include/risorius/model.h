@@ -33,7 +33,7 @@ typedef struct ris_muscle {
     bool on_jaw;                       /* KA-41 */
     uint32_t fiber_count, point_count; /* points per fibre */
     uint32_t first_fiber;
-    float max_shortening, insertion_start, lip_drag_power, radius_mm, gain;
+    float max_shortening, insertion_start, lip_drag_power, radius_mm, gain, strength;
     ris_vec3 axis[2];
     uint32_t tied_ring;        /* ring of the lip that it ties to the bone, UINT32_MAX: none */
     uint8_t lid_eye;           /* eye whose lids it moves: 1 = L, 2 = R, 0 = none */
