@@ -61,11 +61,12 @@ static ris_result read_word(const ris_model *model, const char *name, float *pos
     return r;
 }
 
-/* A word of a vocabulary; of one with two sides each side. pose: two times channel_count floats of room. */
+/* A word of a vocabulary; of one whose sides differ each side, for both halves of what has no side are one and the same.
+ * pose: three times channel_count floats of room. */
 static ris_result add_word(solve_run *run, const ris_word *word, float *pose, ris_error *err)
 {
     const ris_model *model = run->backend.model;
-    float *side = pose + model->channel_count;
+    float *side[2] = {pose + model->channel_count, pose + 2 * (size_t)model->channel_count};
     char name[2][RIS_NAME_SIZE + 4];
     bool moves, moves_side;
     ris_result r = read_word(model, word->name, pose, &moves, err);
@@ -77,8 +78,9 @@ static ris_result add_word(solve_run *run, const ris_word *word, float *pose, ri
     }
     /* without an error to report: a word may have no sides */
     if (word->symmetric && strlen(name[0]) < RIS_NAME_SIZE &&
-        read_word(model, name[0], side, &moves_side, NULL) == RIS_OK &&
-        memcmp(side, pose, model->channel_count * sizeof *pose) != 0) {
+        read_word(model, name[0], side[0], &moves_side, NULL) == RIS_OK &&
+        read_word(model, name[1], side[1], &moves_side, NULL) == RIS_OK &&
+        memcmp(side[0], side[1], model->channel_count * sizeof *pose) != 0) {
         r = add(run, name[0], 0, 1, err);
         return r ? r : add(run, name[1], 0, 1, err);
     }
@@ -88,7 +90,7 @@ static ris_result add_word(solve_run *run, const ris_word *word, float *pose, ri
 static ris_result add_words(solve_run *run, ris_word_kind kind, ris_error *err)
 {
     const ris_vocabulary *vocabulary = &run->backend.model->vocabulary;
-    float *pose = calloc(2 * (size_t)run->backend.model->channel_count + 1u, sizeof *pose);
+    float *pose = calloc(3 * (size_t)run->backend.model->channel_count + 1u, sizeof *pose);
     ris_result r = pose ? RIS_OK : ris_fail(err, RIS_ERROR_MEMORY, "out of memory for a pose");
     for (uint32_t i = 0; !r && i < vocabulary->word_count; i++) {
         if (vocabulary->word[i].kind == kind) {

@@ -101,6 +101,18 @@ static void what_is_far_is_said(void **state)
     assert_non_null(strstr(run.out, "pose: jaw.open=0."));
 }
 
+/* By action units: a side each, but of what has no side one unit alone, for two halves could not be told apart. */
+static void units_have_sides_where_they_differ(void **state)
+{
+    (void)state;
+    expect_in("solve " HUMAN, "face.obj", "--device cpu -q --json --channels au --iterations 1", 0, NULL);
+    assert_non_null(strstr(run.out, "\"AU12.L\""));
+    assert_non_null(strstr(run.out, "\"AU4.R\"")); /* corrugators with half of procerus each */
+    assert_non_null(strstr(run.out, "\"AU26\""));
+    assert_null(strstr(run.out, "\"AU26.L\""));
+    assert_null(strstr(run.out, "\"AU51\"")); /* turns the head */
+}
+
 static void wrong_words_and_files(void **state)
 {
     (void)state;
@@ -140,6 +152,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_exported_face_is_found),
         cmocka_unit_test(what_is_far_is_said),
+        cmocka_unit_test(units_have_sides_where_they_differ),
         cmocka_unit_test(wrong_words_and_files),
         cmocka_unit_test(pairs_end_in_one_face),
     };
