@@ -131,7 +131,7 @@ static void a_set_is_exported(void **state)
 static void frames_are_measured(void **state)
 {
     (void)state;
-    expect(0, NULL, "soak " HEAD "--json --live-link '%s/two.csv' --flipped 1", folder);
+    expect(0, NULL, "soak " HEAD "--json --live-link '%s/two.csv'", folder);
     json_t *root = json_loads(run.out, 0, NULL);
     assert_non_null(root);
     json_t *measures = json_object_get(root, "measures"), *measure;
@@ -151,7 +151,7 @@ static void frames_are_measured(void **state)
     json_decref(root);
     print_message("fastest vertex %g mm/s\n", speed);
     assert_true(speed > 10 && speed < 1000); /* it moves, and no face leaps a metre a second */
-    expect(1, "speed: ", "soak " HEAD "--live-link '%s/two.csv' --flipped 1 --speed 1 --every 10", folder);
+    expect(1, "speed: ", "soak " HEAD "--live-link '%s/two.csv' --speed 1 --every 10", folder);
     assert_non_null(strstr(run.out, "11 of 11 frames, one in 10"));
     assert_non_null(strstr(run.out, "the frame at "));
 }
