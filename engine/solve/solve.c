@@ -10,7 +10,6 @@
 #include <string.h>
 
 #define RIDGE_MM 0.003   /* rms that a control at full value must save to be worth it */
-#define FIRST_STEP 0.5   /* secants at rest, where a little of a muscle says nothing yet */
 #define LARGEST_STEP 0.2 /* secants later: as wide as the last way, within these */
 #define SMALLEST_STEP 0.05
 #define LAST_STEP 0.1 /* at the pose found */
@@ -19,9 +18,18 @@
 #define GLANCE_MM 0.1 /* while the face is farther, what moves late is less than what is left: */
 #define GLANCE_S 0.2  /* then it is held for so long only */
 #define TRIES 6
-#define ALL_EVERY 4  /* iterations: all columns, else those of what acts */
 #define STALLED 0.01 /* an iteration that gains less than this share is one of STALLS that end the search */
 #define STALLS 2
+
+#define GOOD_SHARE 0.01 /* of the distance from rest: nearer than this no other attempt is made */
+#define GOOD_MM 0.01
+
+/* How a search sets out from rest: the secants there, where a little of a muscle says nothing yet, and how careful its first
+ * steps are. A step too long may end where the closed jaw answers to nothing that opens it. */
+static const struct attempt {
+    double first_step, damping;
+} attempts[] = {{0.5, 1e-3}, {0.25, 0.3}, {1, 0.03}};
+#define ATTEMPTS (sizeof attempts / sizeof *attempts)
 
 bool ris_control_independent(const ris_control_found *found)
 {
@@ -334,9 +342,13 @@ ris_result ris__solver_improve(ris_solver *s, double *out_gain, ris_error *err)
 }
 
 /* Rest, as the place to start from. */
-static ris_result start(ris_solver *s, ris_solve_result *out, ris_error *err)
+static ris_result start(ris_solver *s, const struct attempt *attempt, ris_solve_result *out, ris_error *err)
 {
     bool rest;
+    memset(s->u, 0, s->n * sizeof *s->u);
+    memset(s->pose, 0, s->model->channel_count * sizeof *s->pose);
+    s->damping = attempt->damping;
+    s->glanced = false;
     for (uint32_t t = 0; t < s->def->sim_count; ++t) { /* equilibria count, not the way to them */
         ris_sim_set_onset(s->def->sim[t], false);
     }
@@ -349,7 +361,8 @@ static ris_result start(ris_solver *s, ris_solve_result *out, ris_error *err)
     }
     s->rms_mm = out->rest_rms_mm = r ? 0 : measure(s->target, s->seen, &out->rest_max_mm, &out->worst);
     for (uint32_t k = 0; k < s->n; ++k) {
-        ris__solver_choose_step(s, k, FIRST_STEP);
+        s->step[k] = 0;
+        ris__solver_choose_step(s, k, attempt->first_step);
     }
     return r;
 }
@@ -370,12 +383,13 @@ static ris_result settle(ris_solver *s, ris_error *err)
 static ris_result search(ris_solver *s, ris_error *err)
 {
     const ris_solve_def *def = s->def;
+    const uint32_t last = s->iteration + def->iteration_limit;
     double gain = 1;
     ris_result r = RIS_OK;
-    for (uint32_t stalls = 0; !r && s->iteration < def->iteration_limit && stalls < STALLS && gain > 0 &&
-                              s->rms_mm > def->enough_mm;
+    for (uint32_t stalls = 0;
+         !r && s->iteration < last && stalls < STALLS && gain > 0 && s->rms_mm > def->enough_mm;
          ++s->iteration) {
-        r = ris__solver_linearise(s, s->iteration % ALL_EVERY == 0 || stalls, err);
+        r = ris__solver_linearise(s, true, err);
         if (!r) {
             r = ris__solver_improve(s, &gain, err);
         }
@@ -384,6 +398,30 @@ static ris_result search(ris_solver *s, ris_error *err)
             gain = 1;
         }
         stalls = gain < STALLED ? stalls + 1 : 0;
+    }
+    return r;
+}
+
+/* Searches anew, on other ways, while the face stays far; the nearest is the state. best: (n). */
+static ris_result search_all(ris_solver *s, ris_solve_result *out, double *best, ris_error *err)
+{
+    double nearest = INFINITY;
+    ris_result r = RIS_OK;
+    for (size_t a = 0; !r && a < ATTEMPTS && !(nearest <= fmax(GOOD_MM, GOOD_SHARE * out->rest_rms_mm));
+         ++a) {
+        r = start(s, &attempts[a], out, err);
+        if (!r) {
+            r = search(s, err);
+        }
+        if (!r && s->rms_mm < nearest) {
+            nearest = s->rms_mm;
+            memcpy(best, s->u, s->n * sizeof *best);
+        }
+    }
+    if (!r && s->rms_mm > nearest) {
+        memcpy(s->u, best, s->n * sizeof *best);
+        ris__solver_pose(s, s->u, s->pose);
+        r = settle(s, err);
     }
     return r;
 }
@@ -472,14 +510,14 @@ ris_result ris_solve(const ris_solve_def *def, const ris_target *target, ris_sol
                     .model = ris_sim_get_model(def->sim[0]),
                     .target = target,
                     .n = def->control_count,
-                    .rows = 3 * target->count,
-                    .damping = 1e-3};
-    r = open_solver(&s, err);
+                    .rows = 3 * target->count};
+    double *best = NULL;
+    r = ris__model_alloc(&best, s.n, sizeof *best, "the solver", err);
     if (!r) {
-        r = start(&s, out, err);
+        r = open_solver(&s, err);
     }
     if (!r) {
-        r = search(&s, err);
+        r = search_all(&s, out, best, err);
     }
     if (!r) {
         r = ris__solver_thin_out(&s, err);
@@ -491,5 +529,6 @@ ris_result ris_solve(const ris_solve_def *def, const ris_target *target, ris_sol
         ris_sim_set_onset(def->sim[t], true);
     }
     close_solver(&s);
+    free(best);
     return r;
 }
