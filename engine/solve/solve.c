@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define RIDGE_MM 0.003   /* rms that a control at full value must save to be worth it */
+#define RIDGE_MM 0.003   /* least rms that a control at full value must save to be worth it */
 #define LARGEST_STEP 0.2 /* secants later: as wide as the last way, within these */
 #define SMALLEST_STEP 0.05
 #define LAST_STEP 0.1 /* at the pose found */
@@ -21,14 +21,17 @@
 #define STALLED 0.01 /* an iteration that gains less than this share is one of STALLS that end the search */
 #define STALLS 2
 
+#define LITTLE_CAUTION 0.01
+#define LAST_DAMPING 1e-3
 #define GOOD_SHARE 0.01 /* of the distance from rest: nearer than this no other attempt is made */
 #define GOOD_MM 0.01
 
-/* How a search sets out from rest: the secants there, where a little of a muscle says nothing yet, and how careful its first
- * steps are. A step too long may end where the closed jaw answers to nothing that opens it. */
+/* How a search sets out from rest: the secants there, where a little of a muscle says nothing yet; how short its first steps
+ * are; and how dear activation is while the face is far. Dear, because antagonists cost nothing else: loaded against each other
+ * they end where the closed jaw answers to nothing that opens it. */
 static const struct attempt {
-    double first_step, damping;
-} attempts[] = {{0.5, 1e-3}, {0.25, 0.3}, {1, 0.03}};
+    double first_step, damping, caution;
+} attempts[] = {{0.5, 1e-3, 0.1}, {0.25, 0.3, 0.3}, {1, 0.03, 0.03}};
 #define ATTEMPTS (sizeof attempts / sizeof *attempts)
 
 bool ris_control_independent(const ris_control_found *found)
@@ -160,7 +163,7 @@ static double cost(const ris_solver *s, double rms_mm, const double *u)
     for (uint32_t k = 0; k < s->n; ++k) {
         sum += u[k] * u[k];
     }
-    return rms_mm * rms_mm + RIDGE_MM * RIDGE_MM * sum;
+    return rms_mm * rms_mm + s->ridge_mm * s->ridge_mm * sum;
 }
 
 /* Holds a pose from where sim[0] stands, and looks. */
@@ -268,7 +271,7 @@ ris_result ris__solver_linearise(ris_solver *s, bool all, ris_error *err)
 static bool find_step(const ris_solver *s)
 {
     const uint32_t n = s->n;
-    const double ridge = RIDGE_MM * RIDGE_MM;
+    const double ridge = s->ridge_mm * s->ridge_mm;
     memcpy(s->damped, s->gram, (size_t)n * n * sizeof *s->gram);
     for (uint32_t k = 0; k < n; ++k) {
         const bool fork = is_at_fork(s, k);
@@ -313,6 +316,7 @@ ris_result ris__solver_keep(ris_solver *s, ris_error *err)
 
 ris_result ris__solver_improve(ris_solver *s, double *out_gain, ris_error *err)
 {
+    s->ridge_mm = fmax(RIDGE_MM, s->caution * s->rms_mm);
     const double before = cost(s, s->rms_mm, s->u);
     const bool glanced = s->glanced;
     ris_result r = RIS_OK;
@@ -348,6 +352,7 @@ static ris_result start(ris_solver *s, const struct attempt *attempt, ris_solve_
     memset(s->u, 0, s->n * sizeof *s->u);
     memset(s->pose, 0, s->model->channel_count * sizeof *s->pose);
     s->damping = attempt->damping;
+    s->caution = attempt->caution;
     s->glanced = false;
     for (uint32_t t = 0; t < s->def->sim_count; ++t) { /* equilibria count, not the way to them */
         ris_sim_set_onset(s->def->sim[t], false);
@@ -398,7 +403,15 @@ static ris_result search(ris_solver *s, ris_error *err)
             gain = 1;
         }
         stalls = gain < STALLED ? stalls + 1 : 0;
+        if ((stalls == STALLS || gain == 0) && s->caution > 0 &&
+            s->rms_mm > GOOD_MM) { /* at last the distance alone counts */
+            s->caution = s->caution > LITTLE_CAUTION ? LITTLE_CAUTION : 0;
+            s->damping = LAST_DAMPING;
+            stalls = 0;
+            gain = 1;
+        }
     }
+    s->caution = 0;
     return r;
 }
 

@@ -29,7 +29,9 @@ typedef struct ris_solver {
     bool *frozen;     /* stays as it is (n) */
     uint32_t holds, iteration;
     double rms_mm, damping;
-    bool glanced; /* the face was not held until at rest */
+    double ridge_mm; /* rms that a control at full value must save to be worth it */
+    double caution;  /* the ridge as a share of the distance that is left, at least */
+    bool glanced;    /* the face was not held until at rest */
     /* the normal equations of a step, per point of the target, and what solves them */
     double *gram, *damped, *work; /* gram: room for 2 n x 2 n; damped: n x n; work: 4 n^2 + 2 n */
     double *g, *right, *low, *high, *d, *tried_u; /* (n) */
