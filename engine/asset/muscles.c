@@ -43,6 +43,8 @@ static const char *const record_keys[] = {"name",
                                           "puff_radius_mm",
                                           "held_at",
                                           "strength",
+                                          "push_lip",
+                                          "bowstring",
                                           NULL};
 
 static double distance(const ris_vec3 *a, const ris_vec3 *b)
@@ -221,6 +223,7 @@ static ris_result read_numbers(const ris_json_at *at, ris_muscle_def *def, ris_e
     ris_json_at drag = ris__json_key(at, "lip_drag_power"), gain = ris__json_key(at, "gain");
     ris_json_at puff = ris__json_key(at, "puff_mm"), puff_radius = ris__json_key(at, "puff_radius_mm");
     ris_json_at held = ris__json_key(at, "held_at"), strength = ris__json_key(at, "strength");
+    ris_json_at bowstring = ris__json_key(at, "bowstring");
     ris_json_at fat = ris__json_key(at, "fat"), fat_radius = ris__json_key(at, "fat_radius_mm");
     ris_result result;
     def->thickness_mm[0] = 2;
@@ -242,6 +245,7 @@ static ris_result read_numbers(const ris_json_at *at, ris_muscle_def *def, ris_e
         (result = ris__json_float(&fat_radius, RIS_JSON_OPTIONAL, 0.1, 100, &def->fat_radius_mm, err)) ||
         (result = ris__json_float(&puff, RIS_JSON_OPTIONAL, 0, 50, &def->puff_mm, err)) ||
         (result = ris__json_float(&puff_radius, RIS_JSON_OPTIONAL, 0.1, 100, &def->puff_radius_mm, err)) ||
+        (result = ris__json_float(&bowstring, RIS_JSON_OPTIONAL, 0, 1, &def->bowstring, err)) ||
         (result = ris__json_float(&drag, RIS_JSON_OPTIONAL, 0, 64, &def->lip_drag_power, err)) ||
         (result = ris__json_float(&gain, RIS_JSON_OPTIONAL, 0, 10, &def->gain, err))) {
         return result;
@@ -314,6 +318,17 @@ static ris_result read_pace(const ris_json_at *at, const ris_dynamics_def *dynam
                : result;
 }
 
+/* Only a muscle that ends in the skin gathers tissue below a lip. */
+static ris_result read_push_lip(const ris_json_at *at, ris_muscle_def *def, ris_error *err)
+{
+    ris_result result = ris__json_floats(at, RIS_JSON_OPTIONAL, 2, -4, 4, def->push_lip, err);
+    if (result == RIS_OK && !ris__json_absent(at) &&
+        (def->kind != RIS_MUSCLE_LINEAR || def->end_bone != RIS_BONE_AUTO)) {
+        return ris__json_expected(at, err, "no push_lip but for a linear muscle that ends in the skin");
+    }
+    return result;
+}
+
 /* A record with its own grid; def->name is read already. */
 static ris_result read_own(const ris_json_at *at, const ris_head *head, ris_muscle_def *def, ris_error *err)
 {
@@ -326,7 +341,7 @@ static ris_result read_own(const ris_json_at *at, const ris_head *head, ris_musc
     ris_json_at origin = ris__json_key(at, "origin"), insertion = ris__json_key(at, "insertion");
     ris_json_at source = ris__json_key(at, "source"), closes = ris__json_key(at, "closes");
     ris_json_at end_bone = ris__json_key(at, "end_bone"), drives = ris__json_key(at, "drives");
-    ris_json_at acts_on = ris__json_key(at, "acts_on");
+    ris_json_at acts_on = ris__json_key(at, "acts_on"), push = ris__json_key(at, "push_lip");
     ris_result result;
     if ((result = ris__json_choice(&kind_at, RIS_JSON_REQUIRED, kinds, &kind, err)) ||
         (result = ris__json_choice(&bone_at, RIS_JSON_OPTIONAL, bones, &bone, err))) {
@@ -337,7 +352,8 @@ static ris_result read_own(const ris_json_at *at, const ris_head *head, ris_musc
     if ((result = read_end_bone(&end_bone, def, err)) || (result = read_drives(&drives, def, err)) ||
         (result = read_grid(&grid, def, err)) || (result = read_axis(&axis, def, err)) ||
         (result = read_closes(&closes, def, err)) || (result = read_acts_on(&acts_on, def, err)) ||
-        (result = read_numbers(at, def, err)) || (result = read_pace(at, &head->dynamics, def, err)) ||
+        (result = read_push_lip(&push, def, err)) || (result = read_numbers(at, def, err)) ||
+        (result = read_pace(at, &head->dynamics, def, err)) ||
         (result = read_attach(&attach, head->skin.vertex_count, def, err)) ||
         (result = read_action_units(&units, def, err)) || (result = read_story(&origin, &def->origin, err)) ||
         (result = read_story(&insertion, &def->insertion, err)) ||

@@ -2,8 +2,9 @@
  * anchors of the tick.
  *
  * Default tissue (docs/physics.md), node at rest X, bindings (muscle, weight w, activity s in 0..1):
- *     P      = X + min(1, sum w s) sum f w s delta / sum f w s
- *              delta blended over the segments of the binding, f the muscle's strength
+ *     P      = X + sum f w s delta / F / max(1, sum f w s c / F)
+ *              delta blended over the segments of the binding, f the muscle's strength, F its mean over w s,
+ *              c = |delta| / farthest |delta| x squared cosine of delta with the sum
  *              (a ring that a corner of the mouth drags counts with t^p below the bar, t = 1 at the corner,
  *              0 at the midline); the lining of the mouth goes with the lips before it
  *     target = P + jaw_weight (J(P) - P),  normal = unit(n + jaw_weight (J n - n))
@@ -92,42 +93,72 @@ static float dragged(const ris_rig *rig, const ris_binding *binding, float *full
     return share;
 }
 
-/* Adds what one binding moves its node by, and the weight it does so with. A ring that is only dragged weighs
- * little in the middle of its lip, where other muscles rule. */
-static void add_binding(const ris_rig *rig, const ris_binding *binding, ris_vec3 *sum, float *total,
-                        float *strong)
+/* What one binding would move its node by. */
+typedef struct binding_pull {
+    ris_vec3 delta; /* mm, without the weight */
+    float weight;   /* it pulls with */
+    float share;    /* it counts with: less of a ring that is only dragged, in the middle of its lip */
+    float strength; /* of its muscle */
+} binding_pull;
+
+static bool pull_of(const ris_rig *rig, const ris_binding *binding, binding_pull *out)
 {
     const ris_model *model = rig->model;
     const ris_muscle *muscle = &model->muscle[binding->muscle];
     float activity = muscle->max_shortening > 0.0f ? rig->activity[binding->muscle] : 0.0f;
-    float weight = activity;
+    float share = activity;
     if (muscle->kind == RIS_MUSCLE_SPHINCTER) {
-        weight = f_max(weight, dragged(rig, binding, &activity));
+        share = f_max(share, dragged(rig, binding, &activity));
     }
     if (!(activity > 0.0f)) {
-        return;
+        return false;
     }
     ris_vec3 delta = {0};
     for (uint32_t k = 0; k < binding->attach_count; ++k) {
         const ris_attach *attach = &model->attach[binding->first_attach + k];
         delta = v3_mad(delta, attach->share, v3_sub(attached_point(rig, muscle, attach), attach->rest));
     }
-    const float strength = muscle->strength;
-    *sum = v3_mad(*sum, strength * (binding->weight * activity), delta);
-    *total += binding->weight * weight;
-    *strong += strength * (binding->weight * weight);
+    *out = (binding_pull){delta, binding->weight * activity, binding->weight * share, muscle->strength};
+    return true;
+}
+
+/* Muscles that pull the same way as far share a node, those that pull across one another add up: each counts below the
+ * bar by how far it would carry the node, of the farthest, and by the squared cosine with where they carry it together. */
+static ris_vec3 pull_together(const ris_rig *rig, uint32_t i)
+{
+    const ris_model *model = rig->model;
+    ris_vec3 sum = {0};
+    float farthest = 0.0f, total = 0.0f, strong = 0.0f;
+    binding_pull pull;
+    for (uint32_t b = model->binding_start[i]; b < model->binding_start[i + 1]; ++b) {
+        if (pull_of(rig, &model->binding[b], &pull)) {
+            sum = v3_mad(sum, pull.strength * pull.weight, pull.delta);
+            farthest = f_max(farthest, v3_length(pull.delta));
+            total += pull.share;
+            strong += pull.strength * pull.share;
+        }
+    }
+    const float mean = total > 0.0f ? strong / total : 1.0f;
+    sum = v3_scale(sum, 1.0f / mean);
+    const float length = v3_length(sum);
+    if (!(total > 1.0f) || !(length > 0.0f)) {
+        return sum;
+    }
+    const ris_vec3 way = v3_scale(sum, 1.0f / length);
+    float bar = 0.0f;
+    for (uint32_t b = model->binding_start[i]; b < model->binding_start[i + 1]; ++b) {
+        if (pull_of(rig, &model->binding[b], &pull)) {
+            const float far = v3_length(pull.delta), along = f_max(v3_dot(pull.delta, way), 0.0f);
+            bar += far > 0.0f ? pull.strength * pull.share * (along * along) / (far * farthest) : 0.0f;
+        }
+    }
+    return v3_scale(sum, 1.0f / f_max(bar / mean, 1.0f));
 }
 
 static ris_vec3 muscle_move(const ris_rig *rig, uint32_t i)
 {
     const ris_model *model = rig->model;
-    ris_vec3 sum = {0};
-    float total = 0.0f, strong = 0.0f;
-    for (uint32_t b = model->binding_start[i]; b < model->binding_start[i + 1]; ++b) {
-        add_binding(rig, &model->binding[b], &sum, &total, &strong);
-    }
-    const float share = total > 0.0f ? strong / f_min(total, 1.0f) : 1.0f;
-    const ris_vec3 move = v3_scale(sum, 1.0f / share), normal = v4_xyz(model->rest_normal[i]);
+    const ris_vec3 move = pull_together(rig, i), normal = v4_xyz(model->rest_normal[i]);
     if (!model->slide) {
         return move;
     }

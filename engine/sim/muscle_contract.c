@@ -45,6 +45,24 @@ void ris__contract_about(const ris_vec3 *p, uint32_t n, float c, float held_at, 
     }
 }
 
+void ris__bowstring(uint32_t n, float share, ris_vec3 *q)
+{
+    const ris_vec3 from = q[0], to = q[n - 1];
+    float total = 0.0f, own = 0.0f;
+    for (uint32_t i = 1; i < n; ++i) {
+        total += v3_distance(q[i], q[i - 1]);
+    }
+    if (!(share > 0.0f) || !(total > 0.0f)) {
+        return;
+    }
+    ris_vec3 before = from;
+    for (uint32_t i = 1; i + 1 < n; ++i) {
+        own += v3_distance(q[i], before);
+        before = q[i];
+        q[i] = v3_lerp(q[i], v3_lerp(from, to, own / total), share);
+    }
+}
+
 ris_vec3 ris__contract_sphincter(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, float a, uint32_t j, uint32_t f,
                                  float c)
 {
@@ -81,11 +99,16 @@ ris_vec3 ris__contract_lip(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, ris_vec3 side, 
     return v3_mad(q, forward * c * (RIS__LIP_OUTER + (1.0f - RIS__LIP_OUTER) * inner) * (goal - out), axis);
 }
 
+float ris__lip_middle(float along)
+{
+    const float from_middle = 2.0f * along - 1.0f;
+    return 1.0f - from_middle * from_middle;
+}
+
 ris_vec3 ris__protrude(ris_vec3 a0, ris_vec3 a1, uint32_t j, uint32_t f, float along)
 {
-    const float inner = f > 1 ? (float)j / (float)(f - 1) : 1.0f, from_middle = 2.0f * along - 1.0f;
-    const float share =
-        (RIS__LIP_OUTER + (1.0f - RIS__LIP_OUTER) * inner) * (1.0f - from_middle * from_middle);
+    const float inner = f > 1 ? (float)j / (float)(f - 1) : 1.0f;
+    const float share = (RIS__LIP_OUTER + (1.0f - RIS__LIP_OUTER) * inner) * ris__lip_middle(along);
     return v3_scale(v3_sub(a1, a0), RIS__PROTRUDE * share);
 }
 
@@ -103,6 +126,8 @@ typedef struct ring_pose {
     ris_vec3 axis[2], side;
     float c, protrude; /* 0..1 */
     float tie[2];      /* of the halves of a lip to the bone, 0..1 */
+    ris_vec3 push[2];  /* of its halves, at the middle of the lip, mm */
+    float pushed;      /* activation of the strongest pusher, 0..1 */
     bool literal, lip;
 } ring_pose;
 
@@ -123,9 +148,15 @@ static ring_pose pose_ring(const ris_rig *rig, uint32_t m, float c, const float 
     }
     ring.lip = !ring.literal && !muscle->def->closes_on_line && v3_dot(ring.side, ring.side) > 0.5f;
     for (uint32_t k = 0; ring.lip && k < model->muscle_count; ++k) {
-        if (model->muscle[k].tied_ring == m) {
-            float *end = &ring.tie[model->muscle[k].tied_end];
-            *end = f_max(*end, f_clamp(pose[k], 0.0f, 1.0f));
+        const ris_muscle *other = &model->muscle[k];
+        const float a = f_clamp(pose[k], 0.0f, 1.0f);
+        if (other->tied_ring == m) {
+            ring.tie[other->tied_end] = f_max(ring.tie[other->tied_end], a);
+        }
+        if (other->pushed_ring == m && a > 0.0f) {
+            ring.push[other->pushed_end] =
+                v3_mad(ring.push[other->pushed_end], a * other->max_shortening, other->push);
+            ring.pushed = f_max(ring.pushed, a);
         }
     }
     return ring;
@@ -147,6 +178,10 @@ static ris_vec3 contract_ring(const ris_muscle *muscle, const ring_pose *ring, r
         q = ris__contract_sphincter(p, axis[0], axis[1], ring->literal ? ring->protrude : 1.0f, f,
                                     muscle->fiber_count, ring->c);
     }
+    if (ring->pushed > 0.0f) {
+        const ris_vec3 push = v3_lerp(ring->push[0], ring->push[1], f_smoothstep(along));
+        q = v3_mad(q, ris__lip_middle(along), push);
+    }
     if (ring->protrude > 0.0f && !ring->literal) {
         const float middle = ring->lip ? along : 0.5f; /* a closed ring has no ends to stay */
         q = v3_mad(q, ring->protrude, ris__protrude(axis[0], axis[1], f, muscle->fiber_count, middle));
@@ -162,6 +197,7 @@ void ris__muscle_contract(ris_rig *rig, const float *pose)
         rig->puff[side] = f_clamp(pose[rig->first_beside + RIS__CHEEK_PUFF_L + side], -1.0f, 1.0f);
     }
     rig->close = f_clamp(pose[rig->first_beside + RIS__LIPS_CLOSE], 0.0f, 1.0f);
+    const bool literal = (model->push.flags & RIS_TISSUE_FLAG_KAEHLER) != 0;
     for (uint32_t m = 0; m < model->muscle_count; ++m) {
         const ris_muscle *muscle = &model->muscle[m];
         const float activation = f_clamp(pose[m], 0.0f, 1.0f);
@@ -174,7 +210,8 @@ void ris__muscle_contract(ris_rig *rig, const float *pose)
             const float roll = rig->roll[muscle->on_jaw];
             rig->activation[m] = f_max(rig->activation[m], f_max(roll, -roll));
         }
-        rig->activity[m] = f_min(rig->activation[m] / ACTIVITY_FULL, 1.0f);
+        /* one that is pushed moves its skin too, but does not hold its corner */
+        rig->activity[m] = f_min(f_max(rig->activation[m], ring.pushed) / ACTIVITY_FULL, 1.0f);
         rig->contraction[m] = c;
         for (uint32_t f = 0; f < muscle->fiber_count; ++f) {
             const uint32_t first = model->fiber[muscle->first_fiber + f].first_point;
@@ -182,6 +219,9 @@ void ris__muscle_contract(ris_rig *rig, const float *pose)
                 const float shorter = muscle->def->end_bone == RIS_BONE_AUTO ? c : 0.0f;
                 ris__contract_about(rig->p + first, muscle->point_count, shorter, muscle->def->held_at,
                                     rig->q + first);
+                if (!literal) {
+                    ris__bowstring(muscle->point_count, activation * muscle->def->bowstring, rig->q + first);
+                }
                 continue;
             }
             for (uint32_t i = 0; i < muscle->point_count; ++i) {

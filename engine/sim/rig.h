@@ -197,6 +197,9 @@ void ris__rigid_matrix(const ris_rigid *rigid, float out[12]);
 void ris__contract_linear(const ris_vec3 *p, uint32_t n, float c, ris_vec3 *q);
 /* The same towards the point at the share held_at of the length: both ends of the fibre move. */
 void ris__contract_about(const ris_vec3 *p, uint32_t n, float c, float held_at, ris_vec3 *q);
+/* A muscle that spans a hollow straightens when it tightens (default tissue): the points between its ends go the share of
+ * their way to the straight line. */
+void ris__bowstring(uint32_t n, float share, ris_vec3 *q);
 /* KA-32. Point p of fibre j of f (0 outermost), axis a0-a1, position a on it. */
 ris_vec3 ris__contract_sphincter(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, float a, uint32_t j, uint32_t f,
                                  float c);
@@ -211,6 +214,8 @@ ris_vec3 ris__contract_sphincter(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, float a, 
 #define RIS__LIP_ABOVE_INNER 0.5f
 ris_vec3 ris__contract_lip(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, ris_vec3 side, uint32_t j, uint32_t f,
                            float c, float tie);
+/* 1 in the middle of a lip, 0 at its ends. */
+float ris__lip_middle(float along);
 /* What full protrusion moves fibre j of f by in the default tissue: along the axis, by the share RIS__PROTRUDE of its length in the
  * middle of the ring, less the outer fibres, not at all the ends. along: 0 at one end, 1 at the other. */
 #define RIS__PROTRUDE 0.13f

@@ -157,7 +157,7 @@ static void the_connections_of_the_table(void **state)
 static void the_network_has_its_size(void **state)
 {
     (void)state;
-    assert_int_equal(model->network_node_count, 72);
+    assert_int_equal(model->network_node_count, 76);
     assert_int_equal(model->network_spring_count, 216);
 }
 

@@ -169,6 +169,16 @@ static void test_muscle_keys(void **state)
     expect_loads(&head);
     assert_int_equal(head.muscle[0].acts_on, RIS_ACTS_ON_LID);
     assert_int_equal(head.muscle[1].acts_on, RIS_ACTS_ON_LID);
+    assert_true(head.muscle[0].bowstring == 0 && head.muscle[0].push_lip[0] == 0);
+    ris_head_finish(&head);
+    scratch_write("muscles.json", MUSCLES_HEAD "{\"name\":\"a.L\",\"kind\":\"linear\",\"grid\":" GRID
+                                               ",\"bowstring\":0.5,\"push_lip\":[1.5,-0.25]},"
+                                               "{\"name\":\"a.R\",\"mirror_of\":\"a.L\"}]}");
+    expect_loads(&head);
+    for (uint32_t k = 0; k < 2; k++) {
+        assert_true(head.muscle[k].bowstring == 0.5f);
+        assert_true(head.muscle[k].push_lip[0] == 1.5f && head.muscle[k].push_lip[1] == -0.25f);
+    }
     ris_head_finish(&head);
 }
 
@@ -497,6 +507,16 @@ static void test_refuses_muscles(void **state)
         MUSCLES_HEAD "{\"name\":\"a\",\"kind\":\"sphincter\",\"grid\":" GRID
                      ",\"axis\":[[0,0,10],[0,0,20]],\"acts_on\":\"lip\"}]}",
         "muscles[0].acts_on: expected skin for a sphincter (lid if it closes on a line), found \"lip\"");
+    expect_refused("muscles.json",
+                   MUSCLES_HEAD "{\"name\":\"a\",\"kind\":\"linear\",\"grid\":" GRID ",\"bowstring\":1.5}]}",
+                   "muscles[0].bowstring: expected a number of 0 to 1, found 1.5");
+    expect_refused("muscles.json",
+                   MUSCLES_HEAD "{\"name\":\"a\",\"kind\":\"linear\",\"grid\":" GRID ",\"push_lip\":[1]}]}",
+                   "muscles[0].push_lip: expected 2 numbers");
+    expect_refused("muscles.json",
+                   MUSCLES_HEAD "{\"name\":\"a\",\"kind\":\"sphincter\",\"grid\":" GRID
+                                ",\"axis\":[[0,0,10],[0,0,20]],\"push_lip\":[1,0]}]}",
+                   "muscles[0].push_lip: expected no push_lip but for a linear muscle that ends in the skin");
     expect_refused("muscles.json", MUSCLES_HEAD MUSCLE_L ",\n" MUSCLE_L "]}",
                    "muscles.json:2:9: muscles[1].name: the muscle \"risorius.L\" is there already");
     expect_refused("muscles.json",

@@ -85,6 +85,25 @@ static void linear_contraction(void **state) /* KA-31 */
     }
 }
 
+/* Fibre (0,0,0) (0,-3,4) (0,0,8): 10 long, its middle half way; a share of 0.5 takes it half the way to (0,0,4). */
+static void a_bowstring_straightens(void **state)
+{
+    (void)state;
+    ris_vec3 q[4] = {{0, 0, 0}, {0, -3, 4}, {0, 0, 8}, {0, 0, 8}};
+    ris__bowstring(3, 0.0f, q);
+    assert_point(q[1], 0, -3, 4, 0);
+    ris__bowstring(3, 0.5f, q);
+    assert_point(q[0], 0, 0, 0, 0);
+    assert_point(q[1], 0, -1.5f, 4, 1e-5f);
+    assert_point(q[2], 0, 0, 8, 0);
+    ris__bowstring(3, 1.0f, q);
+    assert_point(q[1], 0, 0, 4, 1e-5f);
+    ris_vec3 crooked[4] = {{0, 0, 0}, {0, -2, 0}, {0, -2, 6}, {0, 0, 6}}; /* a fifth and four fifths of the length */
+    ris__bowstring(4, 1.0f, crooked);
+    assert_point(crooked[1], 0, 0, 1.2f, 1e-5f);
+    assert_point(crooked[2], 0, 0, 4.8f, 1e-5f);
+}
+
 static void sphincter_contraction(void **state) /* KA-32 */
 {
     (void)state;
@@ -392,6 +411,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(jaw_rotation),
         cmocka_unit_test(linear_contraction),
+        cmocka_unit_test(a_bowstring_straightens),
         cmocka_unit_test(sphincter_contraction),
         cmocka_unit_test(slit_contraction),
         cmocka_unit_test(group_resolution),

@@ -38,6 +38,9 @@ typedef struct ris_muscle {
     uint32_t tied_ring;        /* ring of the lip that it ties to the bone, UINT32_MAX: none */
     uint8_t lid_eye;           /* eye whose lids it moves: 1 = L, 2 = R, 0 = none */
     uint8_t tied_end;          /* half of the ring: 0 from its first point, 1 from its last */
+    uint32_t pushed_ring;      /* ring of the lip that it pushes, UINT32_MAX: none */
+    uint8_t pushed_end;        /* half of that ring */
+    ris_vec3 push;             /* of the middle of that lip at contraction 1, mm */
     uint32_t protrude_channel; /* of the movable centre (KA-32), UINT32_MAX = none */
     const ris_muscle_def *def;
 } ris_muscle;
