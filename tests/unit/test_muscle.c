@@ -98,7 +98,8 @@ static void a_bowstring_straightens(void **state)
     assert_point(q[2], 0, 0, 8, 0);
     ris__bowstring(3, 1.0f, q);
     assert_point(q[1], 0, 0, 4, 1e-5f);
-    ris_vec3 crooked[4] = {{0, 0, 0}, {0, -2, 0}, {0, -2, 6}, {0, 0, 6}}; /* a fifth and four fifths of the length */
+    ris_vec3 crooked[4] = {
+        {0, 0, 0}, {0, -2, 0}, {0, -2, 6}, {0, 0, 6}}; /* a fifth and four fifths of the length */
     ris__bowstring(4, 1.0f, crooked);
     assert_point(crooked[1], 0, 0, 1.2f, 1e-5f);
     assert_point(crooked[2], 0, 0, 4.8f, 1e-5f);

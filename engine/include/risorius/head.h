@@ -68,8 +68,10 @@ typedef struct ris_muscle_def {
         fat_radius_mm; /* KA-47: how much of the fat over it rises when it shortens, and how far beside it */
     float puff_mm,
         puff_radius_mm; /* wall of the mouth: what a pressure of cheek.puff 1 bulges its middle by, and how far about */
-    float bowstring;   /* share of the way to the straight line between its ends that it goes at activation 1, 0..1 */
-    float push_lip[2]; /* the lip above the tissue that it gathers: mm towards the slit, forward, per mm of shortening */
+    float
+        bowstring; /* share of the way to the straight line between its ends that it goes at activation 1, 0..1 */
+    float push_lip
+        [2]; /* the lip above the tissue that it gathers: mm towards the slit, forward, per mm of shortening */
     bool attach_auto;
     uint32_t attach_count;
     uint32_t *attach; /* skin vertices when attach_auto is false (attach_count) */
