@@ -19,6 +19,10 @@
  * than LINING_ROOM_MM to both jaws: it would be squeezed. */
 #define LINING_CLEAR_MM 1.5f
 #define LINING_ROOM_MM 6.0f
+/* Edges of the lip's inner rim and the lining are long against a canine: their middles keep off the teeth too. */
+#define MIDDLE_CLEAR_MM 0.3f
+#define MIDDLE_LONG_MM 2.5f   /* shorter edges do without */
+#define MIDDLE_REACH_MM 12.0f /* from the teeth at rest */
 #define EYE_CLEAR_MM 0.2f
 #define SLACK_MM 0.01f /* rest stays a fixed point in spite of rounding */
 /* A body farther than this from a node at rest is never asked: tissue does not move so far. */
@@ -203,6 +207,11 @@ static bool is_eye(const ris_contact_solid *solid)
     return solid->bone == RIS_BONE_EYE_L || solid->bone == RIS_BONE_EYE_R;
 }
 
+static bool is_teeth(const ris_contact_solid *solid)
+{
+    return strncmp(solid->name, "teeth", 5) == 0;
+}
+
 static float reach(const ris_contact_solid *solid)
 {
     return is_eye(solid) ? EYE_REACH_MM : solid->bone == RIS_BONE_JAW ? JAW_REACH_MM : BONE_REACH_MM;
@@ -210,10 +219,10 @@ static float reach(const ris_contact_solid *solid)
 
 static float clearance(const ris_contact_solid *solid, bool lining)
 {
-    return is_eye(solid)                           ? EYE_CLEAR_MM
-           : lining                                ? LINING_CLEAR_MM
-           : strncmp(solid->name, "teeth", 5) == 0 ? TEETH_CLEAR_MM
-                                                   : BONE_CLEAR_MM;
+    return is_eye(solid)     ? EYE_CLEAR_MM
+           : lining          ? LINING_CLEAR_MM
+           : is_teeth(solid) ? TEETH_CLEAR_MM
+                             : BONE_CLEAR_MM;
 }
 
 /* Lining with room: farther than LINING_ROOM_MM from one of the two jaws. */
@@ -345,17 +354,51 @@ static ris_result list_pairs(ris_model *model, const uint8_t *lip, ris_contact_n
     return result;
 }
 
-static ris_result list_touches(ris_model *model, bool lining, ris_contact_node *contact, ris_error *err)
+/* Least distance of the middle of edge i-j from teeth; the same seen from both ends. */
+static bool middle_limit(const ris_bake *bake, const ris_contact_solid *solid, const bool *rim, uint32_t i,
+                         uint32_t j, float *out)
 {
+    const ris_model *model = bake->model;
+    const ris_vec3 a = v4_xyz(model->rest_position[i < j ? i : j]),
+                   b = v4_xyz(model->rest_position[i < j ? j : i]);
+    const ris_grid_place place = place_of(solid);
+    ris_vec4 at;
+    if (!is_teeth(solid) || !bake->moving[j] || !(rim[i] || rim[j]) || v3_distance(a, b) < MIDDLE_LONG_MM ||
+        !ris__grid_sample(model->contact_grid + solid->first, &place, v3_scale(v3_add(a, b), 0.5f), &at)) {
+        return false;
+    }
+    *out = f_min(MIDDLE_CLEAR_MM, at.w - SLACK_MM);
+    return at.w < MIDDLE_REACH_MM;
+}
+
+static ris_result add_touch(ris_model *model, uint32_t body, uint32_t other, float limit, ris_error *err)
+{
+    const ris_result result =
+        reserve(&model->contact_touch, model->contact_touch_count, sizeof *model->contact_touch, err);
+    if (result == RIS_OK) {
+        model->contact_touch[model->contact_touch_count++] = (ris_contact_touch){body, other, limit};
+    }
+    return result;
+}
+
+/* rim: of the lips, inner (node_count). */
+static ris_result list_touches(ris_bake *bake, const bool *rim, ris_contact_node *contact, ris_error *err)
+{
+    ris_model *model = bake->model;
+    const uint32_t i = contact->node;
+    const bool lining = bake->lining[i] && has_room(model, i);
     ris_result result = RIS_OK;
     contact->touch_first = model->contact_touch_count;
     for (uint32_t k = 0; k < model->contact_solid_count && result == RIS_OK; ++k) {
+        const ris_contact_solid *solid = &model->contact_solid[k];
         float limit;
-        if (body_limit(model, &model->contact_solid[k], contact->node, lining, &limit)) {
-            result =
-                reserve(&model->contact_touch, model->contact_touch_count, sizeof *model->contact_touch, err);
-            if (result == RIS_OK) {
-                model->contact_touch[model->contact_touch_count++] = (ris_contact_touch){k, limit};
+        if (body_limit(model, solid, i, lining, &limit)) {
+            result = add_touch(model, k, i, limit, err);
+        }
+        for (uint32_t h = model->spring_start[i]; h < model->spring_start[i + 1] && result == RIS_OK; ++h) {
+            const uint32_t j = model->half_spring[h].other;
+            if (middle_limit(bake, solid, rim, i, j, &limit)) {
+                result = add_touch(model, k, j, limit, err);
             }
         }
     }
@@ -378,7 +421,7 @@ static int compare_work(const void *a, const void *b)
     return p->node < q->node ? -1 : p->node > q->node;
 }
 
-static ris_result list_nodes(ris_bake *bake, const uint8_t *lip, ris_error *err)
+static ris_result list_nodes(ris_bake *bake, const uint8_t *lip, const bool *rim, ris_error *err)
 {
     ris_model *model = bake->model;
     ris_result result = RIS_OK;
@@ -389,7 +432,7 @@ static ris_result list_nodes(ris_bake *bake, const uint8_t *lip, ris_error *err)
         }
         result = list_pairs(model, lip, &contact, err);
         if (result == RIS_OK) {
-            result = list_touches(model, bake->lining[i] && has_room(model, i), &contact, err);
+            result = list_touches(bake, rim, &contact, err);
         }
         if (result == RIS_OK &&
             (contact.lip_end > contact.lip_first || contact.touch_end > contact.touch_first)) {
@@ -434,14 +477,20 @@ ris_result ris__bake_contact(ris_bake *bake, ris_error *err)
         return RIS_OK;
     }
     uint8_t *lip = NULL;
+    bool *rim = NULL;
     model->push.lip_radius_mm = LIP_RADIUS_MM;
     ris_result result = add_bodies(bake, err);
     if (result == RIS_OK) {
         result = sort_lips(bake, &lip, err);
     }
     if (result == RIS_OK) {
-        result = list_nodes(bake, lip, err);
+        result = ris__model_alloc(&rim, model->node_count, sizeof *rim, "the lips", err);
     }
+    if (result == RIS_OK) {
+        ris__region_flags(bake->head, "inner_lip_rim", rim);
+        result = list_nodes(bake, lip, rim, err);
+    }
+    free(rim);
     free(lip);
     model->push.contact_node_count = model->contact_node_count;
     for (uint32_t k = 0; k < model->contact_node_count; ++k) { /* sorted: they come first */

@@ -90,9 +90,10 @@ RIS_STRUCT(ris_contact_node) {
     ris_uint touch_end;
 } RIS_STRUCT_END(ris_contact_node);
 
-/* A body that a node can touch. */
+/* A body that a node can touch, or that the middle of one of its edges can. */
 RIS_STRUCT(ris_contact_touch) {
     ris_uint body;
+    ris_uint other;     /* far end of the edge; the node itself for the node */
     ris_float limit_mm; /* least distance from it */
 } RIS_STRUCT_END(ris_contact_touch);
 

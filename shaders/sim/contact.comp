@@ -1,5 +1,5 @@
 // contact (beyond the thesis; KF-04): nodes stay off the other lip and out of bone, teeth and eyes. Every node from the
-// positions before contact, so the order of nodes means nothing. Operation order: docs/physics.md.
+// positions before contact, so the order of nodes means nothing; both ends of an edge give way for its middle. Operation order: docs/physics.md.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "stage.glsl"
@@ -137,7 +137,9 @@ void main()
     }
     for (uint k = c.touch_first; k < c.touch_end; k++) {
         const ris_contact_touch t = contact_touch[k];
-        const float body = touch_body(t.body, at, t.limit_mm, n);
+        precise vec3 half_edge = (free_position[t.other].xyz - x.xyz) * 0.5;
+        precise vec3 middle = at + half_edge;
+        const float body = touch_body(t.body, middle, t.limit_mm, n);
         if (body > 0.0) {
             at = at + body * n;
             half_v = glide(n, half_v);

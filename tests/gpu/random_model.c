@@ -121,8 +121,9 @@ static void fill_contact(ris_model *model, uint32_t *seed)
         }
         for (uint32_t k = 0; k < 3; k++) {
             if (random_unit(seed) < 0.7f) {
+                const uint32_t other = random_unit(seed) < 0.5f ? i : random_word(seed) % n;
                 model->contact_touch[model->contact_touch_count++] =
-                    (ris_contact_touch){k, random_between(seed, -2.0f, 2.0f)};
+                    (ris_contact_touch){k, other, random_between(seed, -2.0f, 2.0f)};
             }
         }
         c.lip_end = model->contact_pair_count;

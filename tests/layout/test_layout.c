@@ -84,6 +84,7 @@ static const field fields[] = {
     FIELD(ris_contact_node, touch_first),
     FIELD(ris_contact_node, touch_end),
     FIELD(ris_contact_touch, body),
+    FIELD(ris_contact_touch, other),
     FIELD(ris_contact_touch, limit_mm),
     FIELD(ris_contact_body, row_x),
     FIELD(ris_contact_body, row_y),

@@ -147,7 +147,7 @@ static void a_push_is_what_it_should_be(void **state)
         grid[k] = v4_from(v3(0.0f, 1.0f, 0.0f), 2.0f * (float)(k / 3 % 3) - 2.0f);
     }
     ris_contact_node node = {.node = 0, .touch_end = 1};
-    ris_contact_touch touch = {0, 1.0f};
+    ris_contact_touch touch = {0, 0, 1.0f};
     ris_ring no_ring = {0};
     uint32_t none[2] = {0, 0};
     ris_vec4 rest = {0.4f, 0.0f, 0.0f, 1.0f}, rest_normal = {1.0f, 0.0f, 0.0f, 0.0f};
@@ -226,6 +226,33 @@ static void hold_and_measure(const ris_measurer *measurer, const char *text, ris
     need(ris__measure_pose(measurer, x, &frames, out, NULL, &err));
 }
 
+/* The middle of an edge is held by both of its ends, alike, and never nearer than at rest. */
+static void middles_have_two_ends(void **state)
+{
+    (void)state;
+    uint32_t middles = 0;
+    for (uint32_t c = 0; c < model->contact_node_count; ++c) {
+        const ris_contact_node *node = &model->contact_node[c];
+        for (uint32_t k = node->touch_first; k < node->touch_end; ++k) {
+            const ris_contact_touch *touch = &model->contact_touch[k];
+            uint32_t twins = 0;
+            for (uint32_t d = 0; touch->other != node->node && d < model->contact_node_count; ++d) {
+                const ris_contact_node *end = &model->contact_node[d];
+                for (uint32_t t = end->touch_first; end->node == touch->other && t < end->touch_end; ++t) {
+                    const ris_contact_touch *twin = &model->contact_touch[t];
+                    twins += twin->body == touch->body && twin->other == node->node &&
+                             twin->limit_mm == touch->limit_mm;
+                }
+            }
+            assert_int_equal(twins, touch->other != node->node);
+            assert_true(touch->other == node->node || touch->limit_mm <= 0.3f);
+            middles += twins;
+        }
+    }
+    print_message("%u ends of %u edges by the teeth\n", middles, middles / 2);
+    assert_true(middles >= 100);
+}
+
 /* What the meshes say, with the stage and, as a control, without it. */
 static void contact_keeps_apart(void **state)
 {
@@ -281,8 +308,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_grid_knows_the_distance),   cmocka_unit_test(the_heads_grids_are_its_bones),
-        cmocka_unit_test(a_push_is_what_it_should_be), cmocka_unit_test(contact_keeps_apart),
-        cmocka_unit_test(rest_is_untouched),
+        cmocka_unit_test(a_push_is_what_it_should_be), cmocka_unit_test(middles_have_two_ends),
+        cmocka_unit_test(contact_keeps_apart),         cmocka_unit_test(rest_is_untouched),
     };
     return cmocka_run_group_tests(tests, open_loaded_head, close_loaded_head);
 }

@@ -1,5 +1,5 @@
 /* contact (beyond the thesis; KF-04): nodes stay off the other lip and out of bone, teeth and eyes. Every node from the
- * positions before contact, so the order of nodes means nothing. Order: docs/physics.md. */
+ * positions before contact, so the order of nodes means nothing; both ends of an edge give way for its middle. Order: docs/physics.md. */
 #include "sim/cpu/cpu_stage.h"
 
 #include "model/distance_grid.h"
@@ -47,10 +47,10 @@ static void touch_lip(const ris_cpu_state *state, const ris_contact_node *contac
     push_off(t, v3(away.x / l, away.y / l, away.z / l), share * (limit - d));
 }
 
-static void touch_body(const ris_vec4 *grid, const ris_contact_body *body, float limit, touch *t)
+/* x: the node, or the middle of an edge that goes with it. */
+static void touch_body(const ris_vec4 *grid, const ris_contact_body *body, ris_vec3 x, float limit, touch *t)
 {
     const ris_vec4 rx = body->row_x, ry = body->row_y, rz = body->row_z;
-    const ris_vec3 x = t->x;
     const ris_vec3 p =
         v3(((rx.x * x.x + rx.y * x.y) + rx.z * x.z) + rx.w, ((ry.x * x.x + ry.y * x.y) + ry.z * x.z) + ry.w,
            ((rz.x * x.x + rz.y * x.y) + rz.z * x.z) + rz.w);
@@ -78,7 +78,10 @@ void ris__cpu_contact(ris_cpu_state *state)
         touch_lip(state, contact, &t);
         for (uint32_t k = contact->touch_first; k < contact->touch_end; ++k) {
             const ris_contact_touch *with = &model->contact_touch[k];
-            touch_body(model->contact_grid, &state->contact_body[with->body], with->limit_mm, &t);
+            const ris_vec3 half_edge =
+                v3_scale(v3_sub(v4_xyz(state->free[with->other]), v4_xyz(state->free[i])), 0.5f);
+            touch_body(model->contact_grid, &state->contact_body[with->body], v3_add(t.x, half_edge),
+                       with->limit_mm, &t);
         }
         state->position[i] = v4_from(t.x, state->free[i].w);
         state->velocity_half[i] = v4_from(t.half, 0.0f);

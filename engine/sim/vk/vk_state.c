@@ -21,7 +21,7 @@ static const uint32_t anchor_bindings[] = {RIS_BIND_ANCHOR_POINT, RIS_BIND_ANCHO
 _Static_assert(sizeof(ris_vec4) == 16 && sizeof(ris_half_spring) == 20 && sizeof(ris_ring) == 8 &&
                    sizeof(ris_anchor_param) == 16 && sizeof(ris_anchor_point) == 32 &&
                    sizeof(ris_contact_body) == 80 && sizeof(ris_contact_node) == 24 &&
-                   sizeof(ris_contact_touch) == 8 && sizeof(ris_inertia) == 48,
+                   sizeof(ris_contact_touch) == 12 && sizeof(ris_inertia) == 48,
                "scalar layout");
 _Static_assert(sizeof(ris_sim_push) <= 128, "push constants");
 _Static_assert(sizeof state_bindings / sizeof(uint32_t) + sizeof table_bindings / sizeof(uint32_t) +
