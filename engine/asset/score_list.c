@@ -6,6 +6,7 @@
 #include <string.h>
 
 #define MAX_UNITS 1024
+#define MAX_TERMS 3 /* of a recipe: what a face does, not a fit of everything it could */
 
 static bool is_unit(const char *text)
 {
@@ -20,6 +21,15 @@ static bool is_unit(const char *text)
             return *part == '\0';
         }
     }
+}
+
+static uint32_t term_count(const char *recipe)
+{
+    uint32_t count = recipe[0] != '\0';
+    for (const char *at = recipe; (at = strchr(at, ',')); at++) {
+        count++;
+    }
+    return count;
 }
 
 static ris_result read_unit(const ris_json_at *at, ris_score_list *list, ris_error *err)
@@ -40,6 +50,10 @@ static ris_result read_unit(const ris_json_at *at, ris_score_list *list, ris_err
     }
     if (!out->recipe[0] && !out->argument[0]) {
         return ris__json_fail(at, err, "expected a recipe, or an argument why there is none, found neither");
+    }
+    if (term_count(out->recipe) > MAX_TERMS) {
+        return ris__json_fail(&recipe, err, "expected a recipe of at most %d names, found %u", MAX_TERMS,
+                              term_count(out->recipe));
     }
     for (uint32_t i = 0; i < list->count; i++) {
         if (strcmp(list->unit[i].unit, out->unit) == 0) {

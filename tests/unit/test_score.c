@@ -221,13 +221,15 @@ static void lists_are_checked(void **state)
     ris__score_list_finish(&list);
     const struct {
         const char *text, *message;
-    } wrong[] = {{LIST(""), "units"},
-                 {LIST("{\"unit\":\"a\"}"), "expected a recipe, or an argument"},
-                 {LIST("{\"unit\":\"../a\",\"recipe\":\"x=1\"}"), "target names joined by '+'"},
-                 {LIST("{\"unit\":\"a+\",\"recipe\":\"x=1\"}"), "target names joined by '+'"},
-                 {LIST("{\"unit\":\"a\",\"recipe\":\"x=1\"},{\"unit\":\"a\",\"recipe\":\"x=2\"}"), "again"},
-                 {LIST("{\"unit\":\"a\",\"recepe\":\"x=1\"}"), "recipe"},
-                 {"{\"format\":\"risorius-clip\",\"version\":1,\"units\":[]}", "risorius-score"}};
+    } wrong[] = {
+        {LIST(""), "units"},
+        {LIST("{\"unit\":\"a\"}"), "expected a recipe, or an argument"},
+        {LIST("{\"unit\":\"a\",\"recipe\":\"AU1=1,AU2=1,AU4=1,AU5=1\"}"), "at most 3 names, found 4"},
+        {LIST("{\"unit\":\"../a\",\"recipe\":\"x=1\"}"), "target names joined by '+'"},
+        {LIST("{\"unit\":\"a+\",\"recipe\":\"x=1\"}"), "target names joined by '+'"},
+        {LIST("{\"unit\":\"a\",\"recipe\":\"x=1\"},{\"unit\":\"a\",\"recipe\":\"x=2\"}"), "again"},
+        {LIST("{\"unit\":\"a\",\"recepe\":\"x=1\"}"), "recipe"},
+        {"{\"format\":\"risorius-clip\",\"version\":1,\"units\":[]}", "risorius-score"}};
     for (size_t k = 0; k < sizeof wrong / sizeof wrong[0]; k++) {
         path = scratch_write("score.json", wrong[k].text);
         expect_error(&err, ris__score_list_load(path, &list, &err), RIS_ERROR_DATA, wrong[k].message);
