@@ -9,7 +9,8 @@
 
 #define FAR_WEIGHT 0.02f
 #define RIM_EDGES 2
-#define PASSES 120 /* of smoothing over the springs: about 25 mm */
+#define PASSES 120    /* of smoothing over the springs: about 25 mm */
+#define RIM_PASSES 12 /* more, with the lining held: the lips go over into it without a step */
 
 /* The lining of the mouth behind the rim of the lips is bound to its bone: over RIM_EDGES edges it gives up the smoothed
  * weight for its own. done counts them (0 outside, or not yet reached). */
@@ -34,6 +35,25 @@ static void bind_lining(const ris_bake *bake, uint32_t *done)
     }
 }
 
+/* Each moving node halfway to the mean of its neighbours, passes times; the lining too, or held. before is scratch. */
+static void smooth(const ris_bake *bake, uint32_t passes, bool lining_too, float *before)
+{
+    ris_model *model = bake->model;
+    for (uint32_t pass = 0; pass < passes; ++pass) {
+        memcpy(before, model->jaw_slide_weight, model->node_count * sizeof *before);
+        for (uint32_t i = 0; i < model->node_count; ++i) {
+            const uint32_t first = model->spring_start[i], end = model->spring_start[i + 1];
+            float sum = 0.0f;
+            for (uint32_t h = first; h < end; ++h) {
+                sum += before[model->half_spring[h].other];
+            }
+            if (bake->moving[i] && end > first && (lining_too || !bake->lining[i])) {
+                model->jaw_slide_weight[i] = 0.5f * before[i] + 0.5f * sum / (float)(end - first);
+            }
+        }
+    }
+}
+
 ris_result ris__bake_jaw_slide(ris_bake *bake, ris_error *err)
 {
     ris_model *model = bake->model;
@@ -48,19 +68,7 @@ ris_result ris__bake_jaw_slide(ris_bake *bake, ris_error *err)
         return result;
     }
     memcpy(model->jaw_slide_weight, bake->head->jaw_weight, n * sizeof *before);
-    for (uint32_t pass = 0; pass < PASSES; ++pass) {
-        memcpy(before, model->jaw_slide_weight, n * sizeof *before);
-        for (uint32_t i = 0; i < n; ++i) {
-            const uint32_t first = model->spring_start[i], end = model->spring_start[i + 1];
-            float sum = 0.0f;
-            for (uint32_t h = first; h < end; ++h) {
-                sum += before[model->half_spring[h].other];
-            }
-            if (bake->moving[i] && end > first) {
-                model->jaw_slide_weight[i] = 0.5f * before[i] + 0.5f * sum / (float)(end - first);
-            }
-        }
-    }
+    smooth(bake, PASSES, true, before);
     for (uint32_t i = 0; i < n; ++i) { /* what is left far away, up to the scalp, is nothing */
         model->jaw_slide_weight[i] =
             f_max((model->jaw_slide_weight[i] - FAR_WEIGHT) / (1.0f - FAR_WEIGHT), 0.0f);
@@ -69,6 +77,7 @@ ris_result ris__bake_jaw_slide(ris_bake *bake, ris_error *err)
     result = ris__model_alloc(&done, n, sizeof *done, "jaw weights", err);
     if (result == RIS_OK) {
         bind_lining(bake, done);
+        smooth(bake, RIM_PASSES, false, before);
     }
     free(done);
     free(before);

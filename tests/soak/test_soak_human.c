@@ -39,7 +39,7 @@ static const held table[] = {
     {"not at rest", 0.1, 0, ""},
 };
 #define FLIPPED_SHARE 0.0001
-#define FLIPPED_SINGLE 2 /* triangles; 0 is wanted: the lower lip near its corners, the jaw pushed forward */
+#define FLIPPED_SINGLE 0
 
 static run_result run;
 static json_t *root;
