@@ -6,7 +6,7 @@ layout(location = 4) in vec3 in_squeeze_own;
 layout(location = 5) in vec3 in_squeeze_mixed;
 layout(location = 0) out vec4 out_color;
 
-const float wrinkle_mm = 3.2;                   // between black and white of the wrinkle texture, fully squeezed
+const float wrinkle_mm = 2.2;                   // between black and white of the wrinkle texture, fully squeezed
 const float fold_from = 0.03, fold_full = 0.30; // shares by which the skin is shorter
 
 // how far skin that is shorter by a share has folded
