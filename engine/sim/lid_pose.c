@@ -21,7 +21,7 @@
 #define MEET_SHARE 0.6f /* ... where the opening is this share of the widest, on the lower margin as it was */
 #define FULL_MM 0.8f    /* how much a closed lid rounds out between margin and fold */
 #define CLEAR_MM 0.25f  /* nearest a moved anchor comes to the eye */
-#define LINING_LESS 0.2f /* of what the surface of the eye comes out by, the lining lies less deep in it */
+#define LINING_LESS 0.4f /* of what the surface of the eye comes out by, the lining lies less deep in it */
 #define THICK_SHARE 0.5f /* what lies farther out at rest keeps this share of it ... */
 #define THICK_MM 0.15f   /* ... up to so much, so that a lid pressed on the cornea is not pressed flat */
 
