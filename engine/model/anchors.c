@@ -89,7 +89,7 @@ static ris_result fill_default(ris_bake *bake, float *normal, float *tangential,
         ris_anchor_param *param = &model->anchor_param[i];
         param->normal = normal[i] * scale;
         param->tangential = tangential[i] * scale;
-        param->bend = tissue->bending * tissue->stiffness_scale;
+        param->bend = ris__bend_stiffness(bake, i);
         const float thick = bake->head->depth_mm[i] / HEFT_MM;
         model->heft[i] = area_share(model, i) * f_clamp(thick * thick, 0.04f, 2.0f);
         if (!(param->normal >= 0.0f) || !(param->tangential >= 0.0f)) {

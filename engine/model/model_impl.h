@@ -38,6 +38,8 @@ ris_result ris__model_alloc(void *out, size_t count, size_t size, const char *wh
 ris_result ris__bake_triangles(ris_bake *bake, ris_error *err);
 /* Which nodes move (KA-09) and their mass (KA-13); rest_position. */
 ris_result ris__bake_mass(ris_bake *bake, ris_error *err);
+/* Of the umbrella of node i, g/s^2: the bending of the tissue, more where edges are short. Springs must be baked. */
+float ris__bend_stiffness(const ris_bake *bake, uint32_t i);
 /* KA-10, KA-11 and the bending umbrella: spring_start, half_spring. */
 ris_result ris__bake_springs(ris_bake *bake, ris_error *err);
 /* jaw_slide_weight. */

@@ -5,6 +5,9 @@
 
 #include <stdlib.h>
 
+#define BEND_EDGE_MM 4.0f /* a mean edge that long, or longer, has the bending of the tissue */
+#define BEND_MOST 16.0f   /* times that at most, for the step must stay stable */
+
 ris_result ris__bake_mass(ris_bake *bake, ris_error *err)
 {
     ris_model *model = bake->model;
@@ -86,6 +89,22 @@ static uint32_t largest_ring(const ris_model *model)
     return largest;
 }
 
+/* The umbrella is an offset that the same curvature makes smaller where edges are short: k |L|^2 an area goes with the
+ * square of the edge. So that a fine mesh bends no more readily, k grows as edges get shorter than BEND_EDGE_MM. */
+float ris__bend_stiffness(const ris_bake *bake, uint32_t i)
+{
+    const ris_model *model = bake->model;
+    const ris_tissue_def *tissue = &bake->head->tissue;
+    const uint32_t first = model->spring_start[i], end = model->spring_start[i + 1];
+    float sum = 0.0f;
+    for (uint32_t h = first; h < end; ++h) {
+        sum += model->half_spring[h].rest_mm;
+    }
+    const float mean = end > first ? sum / (float)(end - first) : BEND_EDGE_MM;
+    const float finer = BEND_EDGE_MM / mean;
+    return tissue->bending * tissue->stiffness_scale * f_clamp(finer * finer, 1.0f, BEND_MOST);
+}
+
 /* Umbrella weights 1/length, normalised over the node; bend_in gathers the transpose (docs/physics.md,
  * bend). */
 static void weigh_umbrellas(ris_bake *bake)
@@ -95,7 +114,6 @@ static void weigh_umbrellas(ris_bake *bake)
     if (tissue->model == RIS_TISSUE_KAEHLER) {
         return;
     }
-    const float stiffness = tissue->bending * tissue->stiffness_scale;
     for (uint32_t i = 0; i < model->node_count; ++i) {
         float sum = 0.0f;
         for (uint32_t h = model->spring_start[i]; bake->moving[i] && h < model->spring_start[i + 1]; ++h) {
@@ -110,7 +128,8 @@ static void weigh_umbrellas(ris_bake *bake)
             uint32_t other = model->half_spring[h].other;
             for (uint32_t b = model->spring_start[other]; b < model->spring_start[other + 1]; ++b) {
                 if (model->half_spring[b].other == i) {
-                    model->half_spring[h].bend_in = stiffness * model->half_spring[b].bend_out;
+                    model->half_spring[h].bend_in =
+                        ris__bend_stiffness(bake, other) * model->half_spring[b].bend_out;
                 }
             }
         }

@@ -137,12 +137,41 @@ static void a_bound_of_nothing_is_broken(void **state)
     assert_int_equal(broken(strict, 2, false), 2);
 }
 
+/* A jaw that opens by half shuts within a tenth of a second, and one thrust forward under a raised chin: the half
+ * millimetre triangles at the corners of the lower lip turned over in both. */
+static void the_corners_of_the_lips_stay(void **state)
+{
+    (void)state;
+    char folder[COMMAND_PATH_SIZE], path[COMMAND_PATH_SIZE + 16], rows[4096], line[COMMAND_PATH_SIZE + 256];
+    int used = snprintf(rows, sizeof rows,
+                        "Timecode,BlendshapeCount,JawOpen,MouthLowerDownLeft,MouthLowerDownRight,"
+                        "MouthUpperUpLeft,MouthUpperUpRight\n");
+    for (int frame = 0; frame < 36; ++frame) {
+        const double open = frame < 15 ? 1 : frame < 20 ? (20 - frame) / 6.0 : 0;
+        used += snprintf(rows + used, sizeof rows - (size_t)used,
+                         "00:00:00:%02d.000,5,%.3f,%.3f,%.3f,%.3f,%.3f\n", frame, 0.48 * open, 0.26 * open,
+                         0.26 * open, 0.15 * open, 0.15 * open);
+        assert_true((size_t)used < sizeof rows);
+    }
+    command_folder(folder, "soak_corners");
+    snprintf(path, sizeof path, "%s/shut.csv", folder);
+    command_write_file(path, rows);
+    snprintf(line, sizeof line, "soak '" RIS_SOURCE_DIR "/assets/human' --device cpu -q --live-link '%s'",
+             path);
+    command_run(&run, NULL, line);
+    assert_int_equal(run.code, 0);
+    command_run(&run, NULL,
+                "soak '" RIS_SOURCE_DIR "/assets/human' --device cpu -q --pose jaw.forward=1,mentalis=0.35");
+    assert_int_equal(run.code, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(no_measure_gets_worse),
         cmocka_unit_test(few_triangles_turn_over),
         cmocka_unit_test(a_bound_of_nothing_is_broken),
+        cmocka_unit_test(the_corners_of_the_lips_stay),
     };
     return cmocka_run_group_tests(tests, hold_poses, forget_poses);
 }
