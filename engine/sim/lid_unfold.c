@@ -86,12 +86,23 @@ static bool push_apart(ris_rig *rig, const ris_lid_triangle *t, ris_vec3 cross, 
     return square > 0.0f;
 }
 
+/* Returns whether a node of the triangle gave way in the last pass. */
+static bool has_moved(const ris_rig *rig, const ris_lid_triangle *t)
+{
+    bool moved = false;
+    for (int k = 0; k < 3; ++k) {
+        moved = moved || (t->lid[k] != UINT32_MAX && rig->lid_moved[t->lid[k]]);
+    }
+    return moved;
+}
+
 static void move_nodes(ris_rig *rig)
 {
     const ris_model *model = rig->model;
     for (uint32_t k = 0; k < model->lid_count; ++k) {
         const ris_vec3 push = rig->lid_push[k];
-        if (push.x != 0.0f || push.y != 0.0f || push.z != 0.0f) {
+        rig->lid_moved[k] = push.x != 0.0f || push.y != 0.0f || push.z != 0.0f;
+        if (rig->lid_moved[k]) {
             const uint32_t i = model->lid[k].node;
             rig->target[i] = v3_add(rig->target[i], push);
             rig->delta[i] = v4_from(v3_add(v4_xyz(rig->delta[i]), push), 0.0f);
@@ -101,20 +112,42 @@ static void move_nodes(ris_rig *rig)
     }
 }
 
+/* Triangles that moved, or that see one that moved, must be looked at again; others lack nothing still. */
+static void wake(ris_rig *rig)
+{
+    const ris_model *model = rig->model;
+    for (uint32_t t = 0; t < model->lid_triangle_count; ++t) {
+        const ris_lid_triangle *triangle = &model->lid_triangle[t];
+        if (has_moved(rig, triangle)) {
+            rig->lid_cross[t] = cross_of(rig, triangle);
+            rig->lid_awake[t] = true;
+            for (uint32_t k = triangle->around_first; k < triangle->around_end; ++k) {
+                rig->lid_awake[model->lid_around[k]] = true;
+            }
+        }
+    }
+}
+
 void ris__lid_unfold(ris_rig *rig)
 {
     const ris_model *model = rig->model;
+    for (uint32_t t = 0; t < model->lid_triangle_count; ++t) {
+        rig->lid_cross[t] = cross_of(rig, &model->lid_triangle[t]);
+        rig->lid_awake[t] = true;
+    }
     bool some = true;
     for (int pass = 0; pass < PASSES && some; ++pass) {
         some = false;
         for (uint32_t k = 0; k < model->lid_triangle_count; ++k) {
-            rig->lid_cross[k] = cross_of(rig, &model->lid_triangle[k]);
-        }
-        for (uint32_t k = 0; k < model->lid_triangle_count; ++k) {
             const ris_lid_triangle *t = &model->lid_triangle[k];
-            some = push_apart(rig, t, rig->lid_cross[k], turned_normal(rig, t), 0.0f) || some;
-            some = push_apart(rig, t, rig->lid_cross[k], mean_normal(rig, t), t->keeps) || some;
+            if (rig->lid_awake[k]) {
+                bool lacks = push_apart(rig, t, rig->lid_cross[k], turned_normal(rig, t), 0.0f);
+                lacks = push_apart(rig, t, rig->lid_cross[k], mean_normal(rig, t), t->keeps) || lacks;
+                rig->lid_awake[k] = lacks;
+                some = some || lacks;
+            }
         }
         move_nodes(rig);
+        wake(rig);
     }
 }

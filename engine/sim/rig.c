@@ -42,6 +42,8 @@ ris_result ris__rig_init(ris_rig *rig, const ris_model *model, ris_error *err)
         {&rig->lid_move, model->lid_count, sizeof *rig->lid_move},
         {&rig->lid_turn, model->lid_count, sizeof *rig->lid_turn},
         {&rig->lid_push, model->lid_count, sizeof *rig->lid_push},
+        {&rig->lid_moved, model->lid_count, sizeof *rig->lid_moved},
+        {&rig->lid_awake, model->lid_triangle_count, sizeof *rig->lid_awake},
         {&rig->lid_cross, model->lid_triangle_count, sizeof *rig->lid_cross},
     };
     for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; ++k) {
@@ -96,6 +98,8 @@ void ris__rig_finish(ris_rig *rig)
     free(rig->lid_move);
     free(rig->lid_turn);
     free(rig->lid_push);
+    free(rig->lid_moved);
+    free(rig->lid_awake);
     free(rig->lid_cross);
     memset(rig, 0, sizeof *rig);
 }

@@ -130,6 +130,8 @@ typedef struct ris_rig {
     ris_turn *lid_turn; /* about the lateral axis (lid_count) */
     /* lid_unfold */
     ris_vec3 *lid_push;  /* scratch, zero between ticks, mm (lid_count) */
+    bool *lid_moved;     /* scratch: gave way in the last pass (lid_count) */
+    bool *lid_awake;     /* scratch: may lack something (lid_triangle_count) */
     ris_vec3 *lid_cross; /* scratch: normal of each triangle times twice its area (lid_triangle_count) */
     /* contact_pose */
     ris_contact_body body[RIS_CONTACT_BODIES];
