@@ -128,7 +128,7 @@ static ris_result solve(solve_run *run, ris_error *err)
 }
 
 typedef struct solve_words {
-    const char *iterations, *threads, *poses, *seed, *enough, *near;
+    const char *iterations, *threads, *poses, *first, *seed, *enough, *near;
 } solve_words;
 
 static ris_result read_words(const solve_words *words, solve_args *args, ris_error *err)
@@ -139,6 +139,7 @@ static ris_result read_words(const solve_words *words, solve_args *args, ris_err
     } count[] = {{"iterations", words->iterations, 1, 10000, &args->iterations},
                  {"threads", words->threads, 1, RIS_SOLVE_SIMS, &args->threads},
                  {"self-test", words->poses, 1, 1000000, &args->poses},
+                 {"first", words->first, 0, 1000000, &args->first},
                  {"seed", words->seed, 0, UINT32_MAX, &args->seed}};
     ris_result r = RIS_OK;
     for (size_t k = 0; !r && k < sizeof count / sizeof *count; k++) {
@@ -160,6 +161,9 @@ static ris_result check_args(const solve_args *args, uint32_t count, ris_error *
 {
     if (args->self_test && (count > 1 || args->out || args->landmarks || args->align)) {
         return ris_fail(err, RIS_ERROR_USAGE, "--self-test makes its own targets and writes no file");
+    }
+    if (!args->self_test && args->first) {
+        return ris_fail(err, RIS_ERROR_USAGE, "--first says with which pose --self-test begins");
     }
     if (!args->self_test && count < 2) {
         return ris_fail(err, RIS_ERROR_USAGE,
@@ -190,6 +194,7 @@ static ris_result parse(ris_cli *cli, int argc, char **argv, solve_args *args, r
          &w.threads, NULL},
         {"self-test", 0, "N", "hold N random poses of 1 to 6 channels and find them again", NULL, &w.poses,
          NULL},
+        {"first", 0, "K", "number of the first of them (0)", NULL, &w.first, NULL},
         {"seed", 's', "S", "which random poses (1)", NULL, &w.seed, NULL},
         {0},
     };
@@ -223,7 +228,7 @@ static ris_result run(ris_cli *cli, int argc, char **argv, ris_error *err)
 
 const cli_command cmd_solve = {
     .name = "solve",
-    .usage = "HEAD (TARGET [-o FILE] [--channels LIST] | --self-test N [--seed S])",
+    .usage = "HEAD (TARGET [-o FILE] [--channels LIST] | --self-test N [--first K] [--seed S])",
     .summary = "find the pose whose face comes nearest to vertices or landmarks",
     .detail =
         "TARGET is an OBJ with the vertices of skin.obj in their order, as export writes it, or landmarks "

@@ -7,7 +7,7 @@
 typedef struct solve_args {
     const char *head, *target, *out, *channels;
     bool landmarks, align, self_test;
-    uint32_t iterations, threads, poses, seed;
+    uint32_t iterations, threads, poses, first, seed;
     double enough_mm, near_mm;
 } solve_args;
 

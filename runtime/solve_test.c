@@ -169,7 +169,7 @@ ris_result solve_self_test(solve_run *run, ris_error *err)
                "off", "worst independent channel");
     }
     for (uint32_t i = 0; !r && i < run->args.poses; i++) {
-        r = test_pose(run, i, pose, &t, err);
+        r = test_pose(run, run->args.first + i, pose, &t, err);
     }
     if (!r) {
         print_tally(run, &t);

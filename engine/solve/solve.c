@@ -19,7 +19,9 @@
 #define GLANCE_S 0.2  /* then it is held for so long only */
 #define TRIES 6
 #define STALLED 0.01 /* an iteration that gains less than this share is one of STALLS that end the search */
+#define STALLED_NEAR 0.25 /* the same once the face is nearer than GOOD_MM */
 #define STALLS 2
+#define QUICK 0.5 /* after an iteration that gained more, what does not act is not asked again */
 
 #define LITTLE_CAUTION 0.01
 #define LAST_DAMPING 1e-3
@@ -85,6 +87,7 @@ static ris_result open_solver(ris_solver *s, ris_error *err)
         {&s->u, n, sizeof *s->u},
         {&s->step, n, sizeof *s->step},
         {&s->frozen, n, sizeof *s->frozen},
+        {&s->drive, RIS_SOLVER_JAW * n, sizeof *s->drive},
         {&s->pose, channels, sizeof *s->pose},
         {&s->seen, rows, sizeof *s->seen},
         {&s->column, 2 * n * rows, sizeof *s->column},
@@ -113,15 +116,18 @@ static ris_result open_solver(ris_solver *s, ris_error *err)
         r = ris_pose_add(s->model, control->name, (float)scale, s->unit + k * channels, err);
         r = r ? r : check_head(s, k, err);
     }
+    if (!r) {
+        ris__solver_find_drives(s);
+    }
     return r;
 }
 
 static void close_solver(ris_solver *s)
 {
-    void *const list[] = {s->knob,       s->unit,   s->u,       s->step,   s->frozen,  s->pose,
-                          s->seen,       s->column, s->gram,    s->damped, s->work,    s->g,
-                          s->right,      s->low,    s->high,    s->d,      s->tried_u, s->tried_seen,
-                          s->tried_pose, s->wanted, s->position};
+    void *const list[] = {s->knob,       s->unit,   s->u,        s->step,   s->frozen,  s->pose,
+                          s->seen,       s->column, s->gram,     s->damped, s->work,    s->g,
+                          s->right,      s->low,    s->high,     s->d,      s->tried_u, s->tried_seen,
+                          s->tried_pose, s->wanted, s->position, s->drive};
     ris__snapshot_free(&s->now);
     for (size_t k = 0; k < sizeof list / sizeof *list; ++k) {
         free(list[k]);
@@ -308,6 +314,7 @@ ris_result ris__solver_keep(ris_solver *s, ris_error *err)
         s->u[k] = s->tried_u[k];
         ris__solver_choose_step(s, k, fmin(fmax(fabs(way), SMALLEST_STEP), LARGEST_STEP));
     }
+    ris__solver_step_inwards(s);
     memcpy(s->seen, s->tried_seen, s->rows * sizeof *s->seen);
     memcpy(s->pose, s->tried_pose, s->model->channel_count * sizeof *s->pose);
     s->rms_mm = measure(s->target, s->seen, NULL, NULL);
@@ -329,6 +336,7 @@ ris_result ris__solver_improve(ris_solver *s, double *out_gain, ris_error *err)
         for (uint32_t k = 0; k < s->n; ++k) {
             s->tried_u[k] = s->u[k] + s->d[k];
         }
+        ris__solver_keep_jaw(s, s->d, s->tried_u);
         r = ris__solver_try(s, &rms, err);
         const double after = r ? 0 : cost(s, rms, s->tried_u);
         if (!r && after < before) {
@@ -388,21 +396,23 @@ static ris_result settle(ris_solver *s, ris_error *err)
 static ris_result search(ris_solver *s, ris_error *err)
 {
     const ris_solve_def *def = s->def;
-    const uint32_t last = s->iteration + def->iteration_limit;
+    const uint32_t first = s->iteration, last = first + def->iteration_limit;
     double gain = 1;
+    bool all = true; /* controls answer anew; after a quick gain only those that act */
     ris_result r = RIS_OK;
     for (uint32_t stalls = 0;
          !r && s->iteration < last && stalls < STALLS && gain > 0 && s->rms_mm > def->enough_mm;
          ++s->iteration) {
-        r = ris__solver_linearise(s, true, err);
+        r = ris__solver_linearise(s, all, err);
         if (!r) {
             r = ris__solver_improve(s, &gain, err);
         }
+        all = gain < QUICK || s->iteration == first;
         if (!r && s->glanced && (gain == 0 || s->rms_mm <= GLANCE_MM)) {
             r = settle(s, err);
             gain = 1;
         }
-        stalls = gain < STALLED ? stalls + 1 : 0;
+        stalls = gain < (s->rms_mm > GOOD_MM ? STALLED : STALLED_NEAR) ? stalls + 1 : 0;
         if ((stalls == STALLS || gain == 0) && s->caution > 0 &&
             s->rms_mm > GOOD_MM) { /* at last the distance alone counts */
             s->caution = s->caution > LITTLE_CAUTION ? LITTLE_CAUTION : 0;

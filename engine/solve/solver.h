@@ -13,20 +13,24 @@ typedef struct ris_snapshot {
     ris_vec4 *state[4];
 } ris_snapshot;
 
+#define RIS_SOLVER_JAW 3 /* open, forward, side */
+
 typedef struct ris_solver {
     const ris_solve_def *def;
     const ris_model *model;
     const ris_target *target;
-    uint32_t n, rows; /* controls; 3 x points of the target */
-    ris_knob *knob;   /* (n) */
-    float *unit;      /* pose of each control at u = 1, not clamped (n x channel_count) */
-    double *u;        /* present values (n) */
-    float *pose;      /* (channel_count) */
-    ris_snapshot now; /* sim[0] at u */
-    float *seen;      /* what the target sees at u (rows) */
-    float *column;    /* response per unit of u at u (n x rows), and room for as many */
-    double *step;     /* secant step of each column in u, with sign (n) */
-    bool *frozen;     /* stays as it is (n) */
+    uint32_t n, rows;                 /* controls; 3 x points of the target */
+    ris_knob *knob;                   /* (n) */
+    float *unit;                      /* pose of each control at u = 1, not clamped (n x channel_count) */
+    double *u;                        /* present values (n) */
+    float *pose;                      /* (channel_count) */
+    ris_snapshot now;                 /* sim[0] at u */
+    float *seen;                      /* what the target sees at u (rows) */
+    float *column;                    /* response per unit of u at u (n x rows), and room for as many */
+    double *step;                     /* secant step of each column in u, with sign (n) */
+    bool *frozen;                     /* stays as it is (n) */
+    double *drive;                    /* of the jaw by each control at u = 1 (RIS_SOLVER_JAW x n) */
+    uint32_t jaw_own[RIS_SOLVER_JAW]; /* the control that is this channel of the jaw alone, or n */
     uint32_t holds, iteration;
     double rms_mm, damping;
     double ridge_mm; /* rms that a control at full value must save to be worth it */
@@ -63,6 +67,14 @@ ris_result ris__solver_keep(ris_solver *solver, ris_error *err);
 /* Steps of growing damping until one brings the face nearer, after ris__solver_linearise. *out_gain: share of the cost that it
  * saved, 0 = none. */
 ris_result ris__solver_improve(ris_solver *solver, double *out_gain, ris_error *err);
+
+void ris__solver_find_drives(ris_solver *solver);
+/* Secants that lead out of the jaw's range, where nothing answers, go the other way where they can. */
+void ris__solver_step_inwards(ris_solver *solver);
+/* Into u, reached by the step d: the jaw as the response promised it, by its own channels. */
+void ris__solver_keep_jaw(const ris_solver *solver, const double *d, double *u);
+/* Jaw channels that only hold against others at the end of the range go to rest in u; false if there are none. */
+bool ris__solver_let_jaw_go(const ris_solver *solver, double *u);
 
 /* Leaves out controls that others stand in for or that the target hardly needs, as long as the face stays as near. */
 ris_result ris__solver_thin_out(ris_solver *solver, ris_error *err);

@@ -178,11 +178,28 @@ static ris_result repair(ris_solver *s, const thinning *t, uint32_t left, double
     return r;
 }
 
+/* The jaw's own channels that only hold against closing muscles: without them the jaw stands where it stood. */
+static ris_result let_jaw_go(ris_solver *s, thinning *t, double limit_mm, ris_error *err)
+{
+    const double before = s->rms_mm;
+    double rms;
+    memcpy(s->tried_u, s->u, s->n * sizeof *s->u);
+    if (!ris__solver_let_jaw_go(s, s->tried_u)) {
+        return RIS_OK;
+    }
+    remember(s, t);
+    ris_result r = ris__solver_try(s, &rms, err);
+    if (!r) {
+        r = ris__solver_keep(s, err);
+    }
+    return r || s->rms_mm <= limit_mm ? r : go_back(s, t, before, err);
+}
+
 ris_result ris__solver_thin_out(ris_solver *s, ris_error *err)
 {
     thinning t = {0};
     double slack = SLACK_MM + SLACK_SHARE * s->rms_mm;
-    const double nearest = s->rms_mm;
+    const double limit = fmax(s->rms_mm + slack, s->def->enough_mm);
     ris_result r = open_thinning(s, &t, err);
     uint32_t refusals = 0;
     for (uint32_t k = 0; k < s->n; ++k) {
@@ -198,19 +215,22 @@ ris_result ris__solver_thin_out(ris_solver *s, ris_error *err)
                 t.index[count++] = k;
             }
         }
+        ris__solver_step_inwards(s);
         r = ris__solver_linearise(s, false, err);
         const uint32_t left = r ? 0 : guess(s, &t, count, slack);
         if (r || left == count) {
             break;
         }
         remember(s, &t);
-        const double limit = fmax(nearest + SLACK_MM + SLACK_SHARE * nearest, s->def->enough_mm);
         r = repair(s, &t, left, limit, err);
         if (!r && !(s->rms_mm <= limit)) {
             r = go_back(s, &t, before, err);
             slack /= 4;
             ++refusals;
         }
+    }
+    if (!r) {
+        r = let_jaw_go(s, &t, limit, err);
     }
     close_thinning(&t);
     return r;

@@ -44,6 +44,11 @@ static int make_face(void **state)
              "'%s/face.obj'",
              folder);
     command_run(&run, NULL, line);
+    if (run.code) {
+        return run.code;
+    }
+    snprintf(line, sizeof line, "export " HUMAN " --device cpu -q -o '%s/rest.obj'", folder);
+    command_run(&run, NULL, line);
     return run.code;
 }
 
@@ -105,7 +110,7 @@ static void what_is_far_is_said(void **state)
 static void units_have_sides_where_they_differ(void **state)
 {
     (void)state;
-    expect_in("solve " HUMAN, "face.obj", "--device cpu -q --json --channels au --iterations 1", 0, NULL);
+    expect_in("solve " HUMAN, "rest.obj", "--device cpu -q --json --channels au --enough 0.01", 0, NULL);
     assert_non_null(strstr(run.out, "\"AU12.L\""));
     assert_non_null(strstr(run.out, "\"AU4.R\"")); /* corrugators with half of procerus each */
     assert_non_null(strstr(run.out, "\"AU26\""));
@@ -120,6 +125,7 @@ static void wrong_words_and_files(void **state)
     expect("solve " HUMAN, 2, "needs a target");
     expect("solve " HUMAN " --self-test 1 -o x", 2, "--self-test");
     expect("solve " HUMAN " --self-test many", 2, "--self-test");
+    expect_in("solve " HUMAN, "face.obj", "--first 56 --device cpu", 2, "--first");
     expect_in("solve " HUMAN, "face.obj", "--channels jaw.opem --device cpu", 2, "jaw.open");
     expect_in("solve " HUMAN, "face.obj", "--channels jaw.open,,lids --device cpu", 2, "expected a name");
     expect_in("solve " HUMAN, "none.obj", "--device cpu", 3, "none.obj");
@@ -132,6 +138,15 @@ static void wrong_words_and_files(void **state)
     expect("pairs " HUMAN " --pair AU6 --device cpu", 2, "two names");
     expect("pairs " HUMAN " --pair AU6,AU99 --device cpu", 2, "AU99");
     expect("pairs " HUMAN " --path nan --device cpu", 2, "--path");
+}
+
+/* One pose by its number, with two channels: nothing before it is run. */
+static void a_self_test_may_begin_anywhere(void **state)
+{
+    (void)state;
+    expect("solve " HUMAN " --self-test 1 --first 57 --device cpu --channels risorius", 0, NULL);
+    assert_non_null(strstr(run.out, "   57     "));
+    assert_non_null(strstr(run.out, "1 poses of seed 1, 2 channels"));
 }
 
 /* Two pairs end in one face on every way; held to nothing, the ways differ. */
@@ -150,11 +165,9 @@ static void pairs_end_in_one_face(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(an_exported_face_is_found),
-        cmocka_unit_test(what_is_far_is_said),
-        cmocka_unit_test(units_have_sides_where_they_differ),
-        cmocka_unit_test(wrong_words_and_files),
-        cmocka_unit_test(pairs_end_in_one_face),
+        cmocka_unit_test(an_exported_face_is_found),          cmocka_unit_test(what_is_far_is_said),
+        cmocka_unit_test(units_have_sides_where_they_differ), cmocka_unit_test(wrong_words_and_files),
+        cmocka_unit_test(a_self_test_may_begin_anywhere),     cmocka_unit_test(pairs_end_in_one_face),
     };
     return cmocka_run_group_tests(tests, make_face, NULL);
 }
