@@ -17,6 +17,8 @@ layout(set = 0, binding = RIS_BIND_CONTACT_BODY, scalar) readonly buffer contact
 
 const float SHARE = 0.5; // of what is missing, a substep: each lip gives way by half, and notches cannot throw
 const float GLIDE = 0.5; // of its speed a touching node keeps, a substep
+const float FILM_MM = 0.1; // that much farther off the moist film still slows, or pressed lips tremble by microns;
+const float FILM_WEIGHT_FULL = 0.03; // with less of the other lip near it fades
 const float LIP_WEIGHT_FULL = 0.3; // with less of the other lip near, contact fades
 
 float dot3(vec3 a, vec3 b)
@@ -37,10 +39,12 @@ vec3 glide(vec3 n, vec3 v)
     return w;
 }
 
-// How far the node at x has to go off the other lip, along the unit vector away_from; 0 = it does not touch.
-float touch_lip(ris_contact_node c, vec3 x, out vec3 away_from)
+// How far the node at x has to go off the other lip, along the unit vector away_from; 0 = it does not touch, and keeps
+// the share `keep` of its speed.
+float touch_lip(ris_contact_node c, vec3 x, out vec3 away_from, out float keep)
 {
     away_from = vec3(0.0);
+    keep = 1.0;
     const vec3 n = normal[c.node].xyz;
     precise float radius2 = push.lip_radius_mm * push.lip_radius_mm;
     precise float weight = 0.0;
@@ -64,12 +68,17 @@ float touch_lip(ris_contact_node c, vec3 x, out vec3 away_from)
     precise float l = sqrt(dot3(away, away));
     if (weight > 0.0 && l > 0.0) {
         precise float d = dist / weight;
-        if (d < c.lip_limit_mm) {
+        precise float gap = d - c.lip_limit_mm;
+        if (gap < 0.0) {
             precise float share = SHARE * min(weight / LIP_WEIGHT_FULL, 1.0);
             precise float amount = share * (c.lip_limit_mm - d);
             precise vec3 u = vec3(away.x / l, away.y / l, away.z / l);
             away_from = u;
             return amount;
+        } else if (gap < FILM_MM) {
+            precise float film = (1.0 - gap / FILM_MM) * min(weight / FILM_WEIGHT_FULL, 1.0);
+            precise float kept = 1.0 - (1.0 - GLIDE) * film;
+            keep = kept;
         }
     }
     return 0.0;
@@ -129,11 +138,15 @@ void main()
     precise vec3 half_v = velocity_half[c.node].xyz;
     precise vec3 prev_v = velocity_prev[c.node].xyz;
     vec3 n;
-    const float lip = touch_lip(c, at, n);
+    float keep;
+    const float lip = touch_lip(c, at, n, keep);
     if (lip > 0.0) {
         at = at + lip * n;
         half_v = glide(n, half_v);
         prev_v = glide(n, prev_v);
+    } else {
+        half_v = half_v * keep;
+        prev_v = prev_v * keep;
     }
     for (uint k = c.touch_first; k < c.touch_end; k++) {
         const ris_contact_touch t = contact_touch[k];

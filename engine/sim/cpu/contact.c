@@ -8,7 +8,10 @@
 
 #define SHARE 0.5f /* of what is missing, a substep: each lip gives way by half, and notches cannot throw */
 #define GLIDE 0.5f /* of its speed a touching node keeps, a substep */
-#define LIP_WEIGHT_FULL 0.3f /* with less of the other lip near, contact fades */
+/* The moist film slows that much farther off, or pressed lips tremble by microns. */
+#define FILM_MM 0.1f
+#define FILM_WEIGHT_FULL 0.03f /* with less of the other lip near it fades */
+#define LIP_WEIGHT_FULL 0.3f   /* with less of the other lip near, contact fades */
 
 /* What contact may change of a node. */
 typedef struct touch {
@@ -40,11 +43,19 @@ static void touch_lip(const ris_cpu_state *state, const ris_contact_node *contac
     float weight;
     const float d = ris__lip_distance(state->model, state->free, state->normal, contact, &away, &weight);
     const float l = v3_length(away);
-    if (!(weight > 0.0f) || !(l > 0.0f) || !(d < limit)) {
+    if (!(weight > 0.0f) || !(l > 0.0f)) {
         return;
     }
-    const float share = SHARE * f_min(weight / LIP_WEIGHT_FULL, 1.0f);
-    push_off(t, v3(away.x / l, away.y / l, away.z / l), share * (limit - d));
+    const float gap = d - limit;
+    if (gap < 0.0f) {
+        const float share = SHARE * f_min(weight / LIP_WEIGHT_FULL, 1.0f);
+        push_off(t, v3(away.x / l, away.y / l, away.z / l), share * (limit - d));
+    } else if (gap < FILM_MM) {
+        const float film = (1.0f - gap / FILM_MM) * f_min(weight / FILM_WEIGHT_FULL, 1.0f);
+        const float keep = 1.0f - (1.0f - GLIDE) * film;
+        t->half = v3_scale(t->half, keep);
+        t->prev = v3_scale(t->prev, keep);
+    }
 }
 
 /* x: the node, or the middle of an edge that goes with it. */
