@@ -82,7 +82,11 @@ static ris_result create_buffers(ris_draw *draw, ris_error *err)
     memset(layers->position.data, 0, (size_t)layers->position.size);
     memset(layers->normal.data, 0, (size_t)layers->normal.size);
     memset(layers->rest.data, 0, (size_t)layers->rest.size);
-    memcpy(layers->strain.data, draw->scene.rest, (size_t)draw->scene.skin_count * 16);
+    ris_vec4 *strain = layers->strain.data;
+    for (uint32_t i = 0; i < draw->scene.skin_count; i++) {
+        strain[i] = draw->scene.rest[i];
+        strain[i].w = fabsf(strain[i].w); /* negative in the mouth */
+    }
 fail:
     return result;
 }

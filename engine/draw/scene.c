@@ -2,6 +2,7 @@
 #include "draw/scene.h"
 
 #include "draw/occlusion.h"
+#include "draw/openings.h"
 #include "draw/refine.h"
 #include "sim/ride.h"
 
@@ -37,11 +38,6 @@ static ris_vec3 mix3(ris_vec3 a, ris_vec3 b, ris_vec3 c, const float w[3])
 {
     return (ris_vec3){w[0] * a.x + w[1] * b.x + w[2] * c.x, w[0] * a.y + w[1] * b.y + w[2] * c.y,
                       w[0] * a.z + w[1] * b.z + w[2] * c.z};
-}
-
-static bool is_mouth(ris_material material)
-{
-    return material == RIS_MATERIAL_TEETH || material == RIS_MATERIAL_GUM || material == RIS_MATERIAL_TONGUE;
 }
 
 /* Rigid parts are modelled as fine as they need to be. */
@@ -348,53 +344,25 @@ static int draw_rank(const piece *of)
     return of->part->material == RIS_MATERIAL_CORNEA ? 3 : of->part->material == RIS_MATERIAL_HAIR ? 2 : 1;
 }
 
-static void find_mouth(ris_draw_scene *out, const piece *all, uint32_t count)
+/* Lips and lining are uncovered when the mouth opens: the sign of the openness says so (skin.vert). */
+static void mark_mouth(ris_draw_scene *out, const ris_head *head, const ris_refined *skin)
 {
-    float front = -FLT_MAX;
-    for (uint32_t i = 0; i < count; i++) {
-        for (uint32_t v = 0;
-             all[i].part != NULL && is_mouth(all[i].part->material) && v < all[i].mesh->vertex_count; v++) {
-            front = fmaxf(front, all[i].mesh->position[v].z);
+    static const char *const name[] = {"lips", "mouth_cavity"};
+    for (size_t k = 0; k < sizeof name / sizeof name[0]; k++) {
+        const ris_region *region = ris_head_region(head, name[k]);
+        for (uint32_t i = 0; region != NULL && i < region->count; i++) {
+            out->rest[region->vertex[i]].w = -fmaxf(fabsf(out->rest[region->vertex[i]].w), 1e-4f);
         }
     }
-    out->mouth = (ris_vec4){front > -FLT_MAX ? front : 0.0f, 32.0f, 0.0f, 0.0f};
-}
-
-/* The two nodes of the lips near x that face each other nearest, one looking down, one up. */
-static void find_lip_pair(const ris_model *model, const ris_region *lips, float x, uint32_t out[2])
-{
-    float nearest = 6.0f * 6.0f;
-    for (uint32_t i = 0; i < lips->count; i++) {
-        uint32_t a = lips->vertex[i];
-        ris_vec4 p = model->rest_position[a];
-        for (uint32_t k = 0; k < lips->count && fabsf(p.x - x) < 3.0f && model->rest_normal[a].y < -0.4f;
-             k++) {
-            uint32_t b = lips->vertex[k];
-            ris_vec4 q = model->rest_position[b];
-            float dx = p.x - q.x, dy = p.y - q.y, dz = p.z - q.z, d2 = 9.0f * dx * dx + dy * dy + dz * dz;
-            if (model->rest_normal[b].y > 0.4f && dy > 0.0f && d2 < nearest) {
-                nearest = d2;
-                out[0] = a;
-                out[1] = b;
-            }
+    const uint32_t nodes = head->skin.vertex_count;
+    for (uint32_t v = nodes; v < skin->vertex_count; v++) { /* edges and faces of the mesh */
+        float marked = 0.0f;
+        for (uint32_t t = skin->term_start[v]; t < skin->term_start[v + 1]; t++) {
+            marked += out->rest[skin->term[t].source].w < 0.0f ? skin->term[t].weight : 0.0f;
         }
-    }
-}
-
-/* Three places where the opening of the mouth is measured: the middle and half way to the corners. */
-static void find_lips(ris_draw_scene *out, const ris_model *model)
-{
-    const ris_region *lips = ris_head_region(model->head, "lips");
-    float widest = 0.0f;
-    for (uint32_t i = 0; lips != NULL && i < lips->count; i++) {
-        widest = fmaxf(widest, fabsf(model->rest_position[lips->vertex[i]].x));
-    }
-    for (int k = 0; k < 3 && lips != NULL; k++) {
-        uint32_t *lip = out->lip + 2 * k;
-        find_lip_pair(model, lips, (float)(k - 1) * 0.55f * widest, lip);
-        ris_vec4 p = out->position[lip[0]], q = out->position[lip[1]];
-        float dx = p.x - q.x, dy = p.y - q.y, dz = p.z - q.z;
-        out->apart[k] = sqrtf(dx * dx + dy * dy + dz * dz);
+        if (marked > 0.4f) {
+            out->rest[v].w = -fmaxf(out->rest[v].w, 1e-4f);
+        }
     }
 }
 
@@ -433,8 +401,7 @@ static ris_result assemble(const ris_model *model, piece *all, uint32_t count, r
     }
     add_lines(out, &all[0].refined);
     add_cast(out, &all[0].refined, levels_for(&all[0]));
-    find_mouth(out, all, count);
-    find_lips(out, model);
+    mark_mouth(out, model->head, &all[0].refined);
     find_fade(out, model);
     /* the skin keeps its weights and rings: taken over, not copied */
     ris_refined *skin = &all[0].refined;
@@ -467,6 +434,9 @@ ris_result ris__draw_scene_build(const ris_model *model, ris_draw_scene *out, ri
     }
     if (result == RIS_OK) {
         result = occlude(all, count, err);
+    }
+    if (result == RIS_OK) {
+        result = ris__draw_openings(head, out->rim, err);
     }
     if (result == RIS_OK) {
         result = assemble(model, all, count, out, err);

@@ -26,7 +26,8 @@ typedef struct ris_draw_scene {
     uint32_t *ring;       /* (ring_count x 2) */
     ris_vec4 *position;   /* at rest, w 1 (vertex_count) */
     ris_vec4 *normal;     /* at rest, w 0 (vertex_count) */
-    ris_vec4 *rest;       /* position at rest, w = visible share of the surroundings (vertex_count) */
+    ris_vec4 *rest;       /* position at rest, w = visible share of the surroundings, negative in
+                           the mouth (vertex_count) */
     ris_draw_corner *corner;
     uint32_t *index; /* triangles into corner (index_count) */
     uint32_t *cast;  /* coarser triangles of the skin for the key light's depth, into corner (cast_count) */
@@ -34,9 +35,7 @@ typedef struct ris_draw_scene {
     ris_draw_ride *ride;  /* (ride_count) */
     ris_draw_item *item;  /* skin first, then opaque parts, hair, clear parts (item_count) */
     const char **texture; /* paths, each once, owned by the head (texture_count) */
-    ris_vec4 mouth;       /* as in ris_draw_view */
-    uint32_t lip[6];
-    float apart[3];
+    uint32_t rim[RIS_DRAW_RIM_COUNT][RIS_DRAW_RIM];
     float fade[2];
     ris_vec3 low, high; /* bounds of everything at rest, mm */
 } ris_draw_scene;

@@ -59,8 +59,6 @@ ris_result ris__draw_soft_record(ris_draw *draw, VkCommandBuffer cmd, const ris_
         if (ris_sim_part_shape(sim, item->part, at)) {
             ris__soft_normals(mesh, at, at + mesh->vertex_count);
             update(cmd, &draw->store.position, item->first_vertex, at, mesh->vertex_count);
-            /* light in the mouth falls off with the place at rest; a tongue that is out stands in full light */
-            update(cmd, &draw->store.rest, item->first_vertex, at, mesh->vertex_count);
             update(cmd, &draw->store.normal, item->first_vertex, at + mesh->vertex_count, mesh->vertex_count);
         }
         free(at);

@@ -151,10 +151,9 @@ void ris__draw_view_fill(const ris_draw *draw, const ris_camera *camera, const f
     out->sky = (ris_vec4){0.35f, 0.37f, 0.40f, 0.0f};
     out->ground = (ris_vec4){0.17f, 0.15f, 0.14f, 0.0f};
     light_rows((ris_vec3){out->light[0].x, out->light[0].y, out->light[0].z}, centre, radius, out->shadow);
-    out->mouth = scene->mouth;
-    out->mouth.z = draw->paper ? PAPER : 0.0f;
-    memcpy(out->lip, scene->lip, sizeof out->lip);
-    memcpy(out->apart, scene->apart, sizeof out->apart);
+    out->paper = draw->paper ? PAPER : 0.0f;
+    memcpy(out->head, head, sizeof out->head);
+    memcpy(out->rim, scene->rim, sizeof out->rim);
     memcpy(out->fade, scene->fade, sizeof out->fade);
     out->size = (ris_vec4){(float)draw->target.width, (float)draw->target.height, (float)RIS_DRAW_SHADOW_SIDE,
                            2.0f * radius / (float)RIS_DRAW_SHADOW_SIDE};

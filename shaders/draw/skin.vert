@@ -3,6 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "draw_graphics.glsl"
 #include "draw_vertex.glsl"
+#include "draw_opening.glsl"
 
 layout(scalar, binding = RIS_DRAW_BIND_SQUEEZE) readonly buffer Squeeze { ris_draw_squeeze squeeze[]; };
 
@@ -20,6 +21,11 @@ void main()
     out_normal = world_direction(facing[c.vertex].xyz);
     out_uv = vec2(c.u, c.v);
     out_rest = rest[c.vertex];
+    if (out_rest.w < 0.0) { // what parting lips uncover is lit as far as they part
+        vec3 into = through_opening(RIS_DRAW_RIM_MOUTH, at[c.vertex].xyz);
+        float seen = length(into), share = seen * clamp((dot(facing[c.vertex].xyz, into) / max(seen, 1e-4) + 0.25) / 1.25, 0.0, 1.0);
+        out_rest.w = max(-out_rest.w, into.z > 0.0 ? share * (1.7 - 0.7 * share) : 0.0);
+    }
     out_squeeze_own = squeeze[c.vertex].own.xyz;
     out_squeeze_mixed = squeeze[c.vertex].mixed.xyz;
     gl_Position = rows(view.clip[0], view.clip[1], view.clip[2], view.clip[3], vec4(out_world, 1.0));

@@ -90,8 +90,8 @@ vec3 linear(vec3 c)
 // studio paper behind the head, brighter in the middle, with a little noise against banding
 vec3 backdrop(vec2 pixel)
 {
-    if (view.mouth.z > 0.0) {
-        return vec3(1.0, 0.985, 0.95) * view.mouth.z;
+    if (view.paper > 0.0) {
+        return vec3(1.0, 0.985, 0.95) * view.paper;
     }
     vec2 at = (pixel / view.size.xy * 2.0 - 1.0) * vec2(0.75, 0.8) - vec2(0.0, -0.1);
     float grey = mix(0.035, 0.17, exp(-dot(at, at) * 0.9));

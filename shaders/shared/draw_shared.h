@@ -41,7 +41,8 @@
 #define RIS_DRAW_BIND_AT 1     /* vec4 (surface vertices): position */
 #define RIS_DRAW_BIND_FACING 2 /* vec4 (surface vertices): normal */
 #define RIS_DRAW_BIND_REST                                                                                   \
-    3 /* vec4 (surface vertices): position at rest, w = visible share of the surroundings */
+    3 /* vec4 (surface vertices): position at rest, w = visible share of the surroundings, negative where
+         the lips cover it */
 #define RIS_DRAW_BIND_CORNER 4 /* ris_draw_corner */
 #define RIS_DRAW_BIND_SQUEEZE 5 /* ris_draw_squeeze (skin surface vertices) */
 #define RIS_DRAW_BIND_COLOR 6   /* texture, sRGB; the buffers come before it */
@@ -49,6 +50,12 @@
 #define RIS_DRAW_BIND_WRINKLE 8 /* texture beside it, linear: R height of fully squeezed skin */
 #define RIS_DRAW_BIND_SHADOW 9  /* depth picture from the key light */
 #define RIS_DRAW_BIND_GRAPHICS_COUNT 10
+
+#define RIS_DRAW_RIM 16 /* points around an opening of the skin */
+#define RIS_DRAW_RIM_MOUTH 0
+#define RIS_DRAW_RIM_EYE_L 1
+#define RIS_DRAW_RIM_EYE_R 2
+#define RIS_DRAW_RIM_COUNT 3
 
 #define RIS_DRAW_WRINKLE_FLAT 0.75 /* height where the skin does not fold */
 
@@ -104,9 +111,9 @@ RIS_DRAW_STRUCT(ris_draw_view)
         light[3]; /* key, fill, rim: unit direction towards the light, w = half angle of the lamp, radians */
     ris_draw_v4 radiance[3]; /* linear RGB, w unused */
     ris_draw_v4 sky, ground; /* ambient from above and below, linear RGB */
-    ris_draw_v4 mouth;       /* x = depth of the teeth's front at rest, mm; y = fall-off, mm; z = grey of a flat backdrop, 0 = studio */
-    ris_draw_uint lip[6];    /* three pairs of surface vertices, upper and lower lip; equal = none */
-    ris_draw_float apart[3]; /* distance of each pair at rest, mm */
+    ris_draw_v4 head[3];     /* rows: the skin's space to world */
+    ris_draw_uint rim[RIS_DRAW_RIM_COUNT * RIS_DRAW_RIM]; /* surface vertices around mouth and lids (engine/draw/openings.h); equal = none */
+    ris_draw_float paper;    /* grey of a flat backdrop, 0 = studio */
     ris_draw_float
         fade[2];      /* the bust melts into the backdrop between these heights at rest, mm; equal = never */
     ris_draw_v4 size; /* width, height in pixels, shadow texels per side, mm per shadow texel */

@@ -28,8 +28,8 @@ static const struct {
     FIELD(ris_draw_corner, vertex), FIELD(ris_draw_corner, u),     FIELD(ris_draw_corner, v),
     FIELD(ris_draw_count, count),   FIELD(ris_draw_view, clip),    FIELD(ris_draw_view, shadow),
     FIELD(ris_draw_view, eye),      FIELD(ris_draw_view, light),   FIELD(ris_draw_view, radiance),
-    FIELD(ris_draw_view, sky),      FIELD(ris_draw_view, ground),  FIELD(ris_draw_view, mouth),
-    FIELD(ris_draw_view, lip),      FIELD(ris_draw_view, apart),   FIELD(ris_draw_view, fade),
+    FIELD(ris_draw_view, sky),      FIELD(ris_draw_view, ground),  FIELD(ris_draw_view, paper),
+    FIELD(ris_draw_view, head),     FIELD(ris_draw_view, rim),     FIELD(ris_draw_view, fade),
     FIELD(ris_draw_view, size),     FIELD(ris_draw_object, place), FIELD(ris_draw_object, tint),
     FIELD(ris_draw_object, pivot),
 };
