@@ -4,6 +4,9 @@
 #include "draw_graphics.glsl"
 #include "draw_light.glsl"
 
+layout(scalar, binding = RIS_DRAW_BIND_AT) readonly buffer At { vec4 at[]; };
+#include "draw_opening.glsl"
+
 layout(location = 0) in vec3 in_world;
 layout(location = 1) in vec3 in_normal;
 layout(location = 2) in vec2 in_uv;
@@ -16,10 +19,12 @@ void main()
     float ndv = clamp(dot(n, v), 0.0, 1.0);
     float fresnel = min(0.03 + 0.97 * fifth(1.0 - ndv), 0.25);
     float ao = clamp(in_rest.w, 0.0, 1.0);
-    vec3 mirror = studio(reflect(-v, n)) * (1.6 * fresnel) * mix(0.2, 1.0, smoothstep(0.15, 0.5, ao));
+    // lids and lashes are mirrored where they hide the room
+    float seen = between_lids(in_world, n), between = seen * seen;
+    vec3 mirror = studio(reflect(-v, n)) * (1.6 * fresnel) * mix(0.2, 1.0, smoothstep(0.15, 0.5, ao)) * between;
     float shadow = mix(0.4, 1.0, key_shadow(in_world, n));
     for (int k = 0; k < 2; k++) {
-        mirror += view.radiance[k].rgb * specular(n, v, view.light[k].xyz, 0.15, 0.03) * (k == 0 ? shadow : 0.5);
+        mirror += view.radiance[k].rgb * specular(n, v, view.light[k].xyz, 0.15, 0.03) * (k == 0 ? shadow : 0.5 * between);
     }
     vec3 shown = tone(mirror * 2.2);
     float cover = max(max(shown.r, shown.g), max(shown.b, 0.0005));

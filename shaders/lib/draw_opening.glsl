@@ -34,3 +34,15 @@ vec3 to_world(vec3 d)
 {
     return vec3(dot(view.head[0].xyz, d), dot(view.head[1].xyz, d), dot(view.head[2].xyz, d));
 }
+
+// Share of the room that a place on an eye sees between its lids, 1 where they are wide open.
+float between_lids(vec3 world, vec3 normal)
+{
+    uint which = object.pivot.x > 0.0 ? RIS_DRAW_RIM_EYE_L : RIS_DRAW_RIM_EYE_R;
+    if (!has_opening(which)) {
+        return 1.0;
+    }
+    vec3 into = through_opening(which, from_world(world));
+    float size = length(into), share = dot(normal, to_world(into)) / max(size, 1e-4);
+    return share < 0.0 ? 1.0 : clamp(1.15 * size * clamp((share + 0.5) / 1.3, 0.0, 1.0), 0.0, 1.0);
+}

@@ -6,8 +6,8 @@ layout(location = 4) in vec3 in_squeeze_own;
 layout(location = 5) in vec3 in_squeeze_mixed;
 layout(location = 0) out vec4 out_color;
 
-const float wrinkle_mm = 2.2;                   // between black and white of the wrinkle texture, fully squeezed
-const float fold_from = 0.03, fold_full = 0.30; // shares by which the skin is shorter
+const float wrinkle_mm = 2.0;                   // between black and white of the wrinkle texture, fully squeezed
+const float fold_from = 0.03, fold_full = 0.24; // shares by which the skin is shorter
 
 // how far skin that is shorter by a share has folded
 float folded(float shorter)
@@ -58,7 +58,7 @@ vec3 skin_color()
     vec3 spread = vec3(0.32, 0.12, 0.07) + thin * vec3(0.45, 0.12, 0.06);
     // creases keep some red: light scatters in from their walls
     vec3 open = ao * (vec3(1.35, 0.95, 0.85) - ao * vec3(0.35, -0.05, -0.15)) + (1.0 - ao) * vec3(0.15, 0.05, 0.045);
-    float lit = key_shadow(in_world, smooth_n);
+    float lit = key_shadow(in_world, smooth_n) * (1.0 - 0.35 * furrow); // its walls keep the lamp out
     vec3 diffuse = ambient(soft) * open, shine = vec3(0.0);
     for (int k = 0; k < 3; k++) {
         vec3 l = view.light[k].xyz;

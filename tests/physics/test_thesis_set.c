@@ -157,8 +157,8 @@ static void the_connections_of_the_table(void **state)
 static void the_network_has_its_size(void **state)
 {
     (void)state;
-    assert_int_equal(model->network_node_count, 76);
-    assert_int_equal(model->network_spring_count, 216);
+    assert_int_equal(model->network_node_count, 78);
+    assert_int_equal(model->network_spring_count, 220);
 }
 
 static ris_vec3 moved(uint32_t m, uint32_t point)

@@ -45,24 +45,22 @@ static float forehead(const place *at, float scalp)
     return sum * (1 - scalp);
 }
 
-/* Corrugators: upright between the brows; procerus: across the root of the nose. */
+/* Corrugators: two upright furrows between the brows, the same on both sides; procerus: across the root of the nose, soft. */
 static float glabella(const place *at)
 {
-    const float wander = 0.6f * ris_paint_noise(vec3_scale(at->site->p, 1 / (6 * at->s)), 431);
+    const float wander = 0.5f * ris_paint_noise(vec3(at->x / 6, at->up / 6, 0), 431);
     const float first =
-        furrow(at->x - 8.2f - 0.12f * (at->up - 18) + wander, 1.5f) * between(9, 31, 8, at->up);
+        furrow(at->x - 9.3f - 0.10f * (at->up - 18) + wander, 1.8f) * between(7, 34, 9, at->up);
     const float second =
-        furrow(at->x - 13.5f - 0.2f * (at->up - 18) + wander, 1.3f) * between(16, 29, 5, at->up);
+        furrow(at->x - 14.8f - 0.2f * (at->up - 18) + wander, 1.6f) * between(14, 28, 6, at->up);
     float across = 0;
-    static const float height[2] = {1.5f, 7}, strength[2] = {0.75f, 0.6f};
+    static const float height[2] = {1.5f, 7.5f}, strength[2] = {0.34f, 0.30f};
     for (int k = 0; k < 2; k++) {
-        const float seed = 11.0f * (float)k;
-        const float broken = 0.8f + 0.5f * ris_paint_noise(vec3(at->site->p.x / (5 * at->s), seed, 7), 433);
-        const float d = at->up - height[k] - 0.022f * at->x * at->x + 1.6f * wander +
-                        0.05f * at->site->p.x / at->s * ((float)k - 0.4f);
-        across += strength[k] * broken * furrow(d, 1.5f);
+        const float broken = 0.9f + 0.3f * ris_paint_noise(vec3(at->x / 5, 11.0f * (float)k, 7), 433);
+        const float d = at->up - height[k] - 0.022f * at->x * at->x + 1.6f * wander;
+        across += strength[k] * broken * furrow(d, 2.0f);
     }
-    return 1.25f * first + 0.7f * second + across * ris_paint_step(10, 3, at->x);
+    return 1.3f * first + 0.5f * second + across * ris_paint_step(11, 2, at->x);
 }
 
 /* Levator of lip and wing: oblique on the side of the nose. */
@@ -70,9 +68,10 @@ static float bunny(const place *at)
 {
     float sum = 0;
     for (int k = 0; k < 5; k++) {
-        const float fall = at->up + 4 + 4.6f * (float)k + 0.75f * (at->x - 6);
-        sum += (1 - 0.1f * (float)k) * furrow(0.8f * fall, 1.1f) *
-               between(3.5f + 1.3f * (float)k, 14 + 1.6f * (float)k, 4, at->x);
+        const float wander = 0.9f * ris_paint_noise(vec3(at->x / 4, (float)k * 5.1f, 1), 435);
+        const float fall = at->up + 4 + 5.2f * (float)k + 0.75f * (at->x - 6) + wander;
+        sum +=
+            1.25f * furrow(0.8f * fall, 1.35f) * between(3 + 1.3f * (float)k, 15 + 1.6f * (float)k, 5, at->x);
     }
     return sum;
 }
