@@ -36,7 +36,7 @@ typedef struct ris_draw_store {
     ris_vk_buffer node; /* uploaded positions of a simulation elsewhere (UPLOAD) */
     ris_vk_buffer view; /* ris_draw_view (UPLOAD) */
     ris_vk_buffer term_start, term, ring_start, ring, ride;
-    ris_vk_buffer position, normal, rest, squeeze, corner, index, line, cast;
+    ris_vk_buffer position, normal, rest, squeeze, fold, corner, index, line, cast;
     ris_vk_image *texture;          /* (texture_count + 1), the last one white */
     ris_vk_image *detail, *wrinkle; /* beside each; without handle where there is none; the last one flat */
     uint32_t texture_count;
@@ -53,7 +53,7 @@ struct ris_draw {
     ris_vk_sets compute_sets;
     ris_vk_sets *graphics_sets; /* one set per texture (store.texture_count + 1) */
     VkPipelineLayout compute_layout, graphics_layout;
-    VkPipeline refine, normal, squeeze, ride;
+    VkPipeline refine, normal, squeeze, fold, ride;
     VkPipeline pipe[RIS_DRAW_PIPE_COUNT];
     ris_vk_cmd cmd, copy;
     ris_draw_layers layers;

@@ -26,6 +26,8 @@ static void record_surface(const ris_draw *draw, VkCommandBuffer cmd)
     ris_vk_barrier(cmd, compute, write, compute, read);
     dispatch(draw, cmd, draw->normal, draw->scene.skin_count);
     dispatch(draw, cmd, draw->squeeze, draw->scene.skin_count);
+    ris_vk_barrier(cmd, compute, write, compute, read | write);
+    dispatch(draw, cmd, draw->fold, draw->scene.skin_count);
     if (draw->scene.ride_count > 0) {
         ris_vk_barrier(cmd, compute, write, compute,
                        read | write); /* one buffer holds skin and riding parts */

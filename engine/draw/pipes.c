@@ -5,6 +5,7 @@
 #include "draw/background_vert.h"
 #include "draw/cornea_frag.h"
 #include "draw/eye_frag.h"
+#include "draw/fold_comp.h"
 #include "draw/hair_frag.h"
 #include "draw/mesh_vert.h"
 #include "draw/mouth_frag.h"
@@ -37,7 +38,8 @@ static ris_result create_compute(ris_draw *draw, ris_error *err)
         [RIS_DRAW_BIND_TERM] = &store->term,     [RIS_DRAW_BIND_POSITION] = &store->position,
         [RIS_DRAW_BIND_NORMAL] = &store->normal, [RIS_DRAW_BIND_RING_START] = &store->ring_start,
         [RIS_DRAW_BIND_RING] = &store->ring,     [RIS_DRAW_BIND_RIDE] = &store->ride,
-        [RIS_DRAW_BIND_AT_REST] = &store->rest,  [RIS_DRAW_BIND_SQUEEZE_OUT] = &store->squeeze};
+        [RIS_DRAW_BIND_AT_REST] = &store->rest,  [RIS_DRAW_BIND_SQUEEZE_OUT] = &store->squeeze,
+        [RIS_DRAW_BIND_FOLD] = &store->fold};
     for (uint32_t i = 0; i < RIS_DRAW_BIND_COMPUTE_COUNT; i++) {
         ris_vk_sets_write_buffer(device, &draw->compute_sets, 0, i, bound[i]->handle, 0, VK_WHOLE_SIZE);
     }
@@ -49,6 +51,8 @@ static ris_result create_compute(ris_draw *draw, ris_error *err)
                                   "draw normal", &draw->normal, err));
     RIS_TRY(ris_vk_compute_create(device, draw->compute_layout, RIS_VK_CODE(ris_spv_skin_squeeze_comp),
                                   "draw squeeze", &draw->squeeze, err));
+    RIS_TRY(ris_vk_compute_create(device, draw->compute_layout, RIS_VK_CODE(ris_spv_fold_comp), "draw fold",
+                                  &draw->fold, err));
     RIS_TRY(ris_vk_compute_create(device, draw->compute_layout, RIS_VK_CODE(ris_spv_ride_comp), "draw ride",
                                   &draw->ride, err));
 fail:
@@ -174,6 +178,7 @@ void ris__draw_pipes_finish(ris_draw *draw)
     vkDestroyPipeline(device, draw->refine, NULL);
     vkDestroyPipeline(device, draw->normal, NULL);
     vkDestroyPipeline(device, draw->squeeze, NULL);
+    vkDestroyPipeline(device, draw->fold, NULL);
     vkDestroyPipeline(device, draw->ride, NULL);
     vkDestroyPipelineLayout(device, draw->compute_layout, NULL);
     vkDestroyPipelineLayout(device, draw->graphics_layout, NULL);

@@ -411,6 +411,12 @@ ris_result ris__refine(const ris_mesh *mesh, uint32_t levels, ris_refined *out, 
     *out = (ris_refined){0};
     bool good = find_edges(&top) && find_rings(&top) && make_terms(&top, levels, out) &&
                 make_quads(&top, levels, out, &raw) && make_index(out, raw) && make_ring(out);
+    out->drawn = good ? malloc(((size_t)out->index_count + 1) * sizeof *out->drawn) : NULL;
+    good = out->drawn != NULL;
+    if (good) {
+        memcpy(out->drawn, out->index, out->index_count * sizeof *out->drawn);
+        out->drawn_count = out->index_count;
+    }
     free(raw);
     topology_finish(&top);
     if (!good) {
@@ -431,6 +437,7 @@ void ris__refined_finish(ris_refined *refined)
     free(refined->ring);
     free(refined->corner);
     free(refined->index);
+    free(refined->drawn);
     *refined = (ris_refined){0};
 }
 

@@ -14,8 +14,9 @@ typedef struct ris_refined {
     uint32_t *quad_face;  /* coarse face each quad came from (quad_count) */
     uint32_t *ring_start; /* (vertex_count + 1) */
     uint32_t *ring; /* next and previous vertex of each quad around a vertex (ring_start[vertex_count] x 2) */
-    ris_draw_corner *corner; /* (corner_count) unique (vertex, uv) pairs */
-    uint32_t *index;         /* triangles, into corner (index_count) */
+    ris_draw_corner *corner;      /* (corner_count) unique (vertex, uv) pairs */
+    uint32_t *index;              /* triangles of the quads, into corner (index_count) */
+    uint32_t *drawn, drawn_count; /* triangles that are drawn, into corner: index, or finer (fold_mesh.h) */
 } ris_refined;
 
 /* levels 0 keeps the faces as they are, 1 refines once. A triangle is a quad whose last two corners are equal.

@@ -1,6 +1,7 @@
 /* Flattens skin and parts (KA-06) into the arrays of a ris_draw_scene. */
 #include "draw/scene.h"
 
+#include "draw/fold_mesh.h"
 #include "draw/occlusion.h"
 #include "draw/openings.h"
 #include "draw/refine.h"
@@ -20,6 +21,7 @@ typedef struct piece {
     ris_refined refined;
     ris_vec3 *position, *normal; /* at rest (refined.vertex_count) */
     float *occlusion;
+    ris_vec4 *fold; /* of the skin */
     ris_ride *ride;
     uint32_t *ride_triangle; /* into model->triangle */
 } piece;
@@ -46,9 +48,35 @@ static uint32_t levels_for(const piece *from)
     return from->part == NULL && from->mesh->face_count <= REFINE_LIMIT ? 1 : 0;
 }
 
+/* The skin, as fine as its painted lines ask for. */
+static ris_result fold_skin(const ris_model *model, piece *skin, ris_error *err)
+{
+    ris_fold_map map = {0};
+    ris_result result =
+        model->head->color != NULL ? ris__fold_map_read(model->head->color, &map, err) : RIS_OK;
+    if (result == RIS_OK) {
+        result = ris__fold_split(&map, skin->mesh->position, &skin->refined, err);
+    }
+    ris_vec3 *position = room(skin->refined.vertex_count, sizeof *position);
+    skin->fold = room(skin->refined.vertex_count, sizeof *skin->fold);
+    if (result == RIS_OK && (position == NULL || skin->fold == NULL)) {
+        result = ris_fail(err, RIS_ERROR_MEMORY, "out of memory for the folds of the skin");
+    }
+    if (result == RIS_OK) {
+        ris__refined_position(&skin->refined, skin->mesh->position, position);
+        result = ris__fold_lines(&map, &skin->refined, position, skin->fold, err);
+    }
+    free(position);
+    ris__fold_map_finish(&map);
+    return result;
+}
+
 static ris_result build_piece(const ris_model *model, piece *to, ris_error *err)
 {
     ris_result result = ris__refine(to->mesh, levels_for(to), &to->refined, err);
+    if (result == RIS_OK && to->part == NULL) {
+        result = fold_skin(model, to, err);
+    }
     if (result != RIS_OK) {
         return result;
     }
@@ -81,6 +109,7 @@ static void finish_piece(piece *from)
     free(from->position);
     free(from->normal);
     free(from->occlusion);
+    free(from->fold);
     free(from->ride);
     free(from->ride_triangle);
 }
@@ -260,14 +289,14 @@ static void append(ris_draw_scene *out, const ris_head *head, const piece *from)
     *item = (ris_draw_item){.material = part ? part->material : RIS_MATERIAL_SKIN,
                             .bone = part ? part->bone : RIS_BONE_SKIN,
                             .first_index = out->index_count,
-                            .index_count = in->index_count,
+                            .index_count = in->drawn_count,
                             .part = part ? (uint32_t)(part - head->part) : UINT32_MAX,
                             .first_vertex = first_vertex,
                             .tint = part ? part->tint : (ris_vec3){0.52f, 0.28f, 0.19f},
                             .pivot = part ? part->pivot : (ris_vec3){0.0f, 0.0f, 0.0f}};
     item->texture = texture_index(out, part ? part->color : head->color);
-    for (uint32_t i = 0; i < in->index_count; i++) {
-        out->index[out->index_count++] = in->index[i] + first_corner;
+    for (uint32_t i = 0; i < in->drawn_count; i++) {
+        out->index[out->index_count++] = in->drawn[i] + first_corner;
     }
     out->vertex_count += in->vertex_count;
     out->corner_count += in->corner_count;
@@ -316,7 +345,7 @@ static bool reserve(ris_draw_scene *out, const piece *all, uint32_t count)
     for (uint32_t i = 0; i < count; i++) {
         vertices += all[i].refined.vertex_count;
         corners += all[i].refined.corner_count;
-        indices += all[i].refined.index_count;
+        indices += all[i].refined.drawn_count;
         rides += all[i].ride != NULL ? all[i].mesh->vertex_count : 0;
     }
     out->position = room(vertices, sizeof *out->position);
@@ -412,6 +441,8 @@ static ris_result assemble(const ris_model *model, piece *all, uint32_t count, r
     out->term = skin->term;
     out->ring_start = skin->ring_start;
     out->ring = skin->ring;
+    out->fold = all[0].fold;
+    all[0].fold = NULL;
     skin->term_start = skin->ring_start = skin->ring = NULL;
     skin->term = NULL;
     return RIS_OK;
@@ -457,6 +488,7 @@ void ris__draw_scene_finish(ris_draw_scene *scene)
     free(scene->term);
     free(scene->ring_start);
     free(scene->ring);
+    free(scene->fold);
     free(scene->position);
     free(scene->normal);
     free(scene->rest);

@@ -24,6 +24,7 @@ typedef struct ris_draw_scene {
     ris_draw_term *term;  /* (term_count) */
     uint32_t *ring_start; /* (skin_count + 1) */
     uint32_t *ring;       /* (ring_count x 2) */
+    ris_vec4 *fold;       /* as RIS_DRAW_BIND_FOLD (skin_count) */
     ris_vec4 *position;   /* at rest, w 1 (vertex_count) */
     ris_vec4 *normal;     /* at rest, w 0 (vertex_count) */
     ris_vec4 *rest;       /* position at rest, w = visible share of the surroundings, negative in

@@ -101,6 +101,7 @@ ris_result ris__draw_store_create(ris_draw *draw, ris_error *err)
     RIS_TRY(fill(device, "draw positions", scene->position, vertices * 16, data, &store->position, err));
     RIS_TRY(fill(device, "draw normals", scene->normal, vertices * 16, data, &store->normal, err));
     RIS_TRY(fill(device, "draw rest", scene->rest, vertices * 16, data, &store->rest, err));
+    RIS_TRY(fill(device, "draw folds", scene->fold, skin * 16, data, &store->fold, err));
     RIS_TRY(ris_vk_buffer_create(device, RIS_VK_DEVICE, (skin + 1) * sizeof(ris_draw_squeeze), data,
                                  "draw squeeze", &store->squeeze, err));
     RIS_TRY(fill(device, "draw corners", scene->corner, scene->corner_count * sizeof *scene->corner, data,
@@ -125,7 +126,7 @@ void ris__draw_store_finish(ris_draw *draw)
     ris_vk_buffer *all[] = {&store->node,       &store->view, &store->term_start, &store->term,
                             &store->ring_start, &store->ring, &store->ride,       &store->position,
                             &store->normal,     &store->rest, &store->squeeze,    &store->corner,
-                            &store->index,      &store->line, &store->cast};
+                            &store->index,      &store->line, &store->cast,       &store->fold};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
         ris_vk_buffer_finish(device, all[i]);
     }

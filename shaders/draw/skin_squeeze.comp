@@ -11,6 +11,7 @@ layout(scalar, binding = RIS_DRAW_BIND_RING_START) readonly buffer RingStart { u
 layout(scalar, binding = RIS_DRAW_BIND_RING) readonly buffer Ring { uint ring[]; };
 layout(scalar, binding = RIS_DRAW_BIND_AT_REST) readonly buffer Rest { vec4 rest[]; };
 layout(scalar, binding = RIS_DRAW_BIND_SQUEEZE_OUT) writeonly buffer Squeeze { ris_draw_squeeze squeeze[]; };
+layout(scalar, binding = RIS_DRAW_BIND_FOLD) readonly buffer Fold { vec4 fold[]; };
 layout(scalar, push_constant) uniform Push { ris_draw_count push; };
 
 void main()
@@ -57,6 +58,7 @@ void main()
         return;
     }
     vec3 gu = (cvv * fu - cuv * fv) / area, gv = (cuu * fv - cuv * fu) / area; // F C^-1
-    squeeze[i] = ris_draw_squeeze(vec4(gu * gu + gv * gv, 0.0),
+    float shorter = 1.0 - length(dot(fold[i].xyz, u) * fu + dot(fold[i].xyz, v) * fv);
+    squeeze[i] = ris_draw_squeeze(vec4(gu * gu + gv * gv, shorter),
                                   vec4(gu.x * gu.y + gv.x * gv.y, gu.y * gu.z + gv.y * gv.z, gu.z * gu.x + gv.z * gv.x, 0.0));
 }

@@ -6,13 +6,10 @@ layout(location = 4) in vec3 in_squeeze_own;
 layout(location = 5) in vec3 in_squeeze_mixed;
 layout(location = 0) out vec4 out_color;
 
-const float wrinkle_mm = 2.0;                   // between black and white of the wrinkle texture, fully squeezed
-const float fold_from = 0.03, fold_full = 0.24; // shares by which the skin is shorter
-
 // how far skin that is shorter by a share has folded
 float folded(float shorter)
 {
-    return smoothstep(fold_from, fold_full, shorter);
+    return smoothstep(RIS_DRAW_FOLD_FROM, RIS_DRAW_FOLD_FULL, shorter);
 }
 
 // share by which the skin is shorter now along a direction (world, any length)
@@ -42,7 +39,7 @@ vec3 skin_color()
     float height = texture(wrinkle_texture, in_uv).r;
     vec3 across_fold = sign(area) * (dFdx(height) * across_x + dFdy(height) * across_y);
     float fold = folded(shorter_along(across_fold));
-    vec3 fold_slope = wrinkle_mm * fold * across_fold;
+    vec3 fold_slope = RIS_DRAW_WRINKLE_MM * fold * across_fold;
     // at the bottom of a furrow the slope has no direction: the sum of both
     float squeezed = folded(1.0 - inversesqrt(max(in_squeeze_own.x + in_squeeze_own.y + in_squeeze_own.z - 1.0, 1.0)));
     float furrow = squeezed * clamp((RIS_DRAW_WRINKLE_FLAT - height) / 0.6, 0.0, 1.0);

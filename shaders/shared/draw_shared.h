@@ -22,7 +22,7 @@
 #define RIS_DRAW_GROUP 64
 #define RIS_DRAW_STRAIN_FULL 0.4 /* RIS_STRAIN_FULL of risorius/draw.h */
 
-/* Set 0 of refine.comp, surface_normal.comp, skin_squeeze.comp and ride.comp; all storage buffers. "Surface" vertices are what is drawn: the
+/* Set 0 of refine.comp, surface_normal.comp, skin_squeeze.comp, fold.comp and ride.comp; all storage buffers. "Surface" vertices are what is drawn: the
  * refined skin first, then the parts. */
 #define RIS_DRAW_BIND_NODE 0       /* vec4 (node_count): simulated positions, mm */
 #define RIS_DRAW_BIND_TERM_START 1 /* uint (skin surface vertices + 1) */
@@ -34,7 +34,8 @@
 #define RIS_DRAW_BIND_RIDE 7       /* ris_draw_ride */
 #define RIS_DRAW_BIND_AT_REST 8    /* vec4 (surface vertices): as RIS_DRAW_BIND_REST */
 #define RIS_DRAW_BIND_SQUEEZE_OUT 9 /* ris_draw_squeeze (skin surface vertices) */
-#define RIS_DRAW_BIND_COMPUTE_COUNT 10
+#define RIS_DRAW_BIND_FOLD 10       /* vec4 (skin surface vertices): direction across a painted line at rest, w = mm out when folded */
+#define RIS_DRAW_BIND_COMPUTE_COUNT 11
 
 /* Set 0 of the graphics stages. */
 #define RIS_DRAW_BIND_FRAME 0  /* ris_draw_view */
@@ -58,12 +59,15 @@
 #define RIS_DRAW_RIM_COUNT 3
 
 #define RIS_DRAW_WRINKLE_FLAT 0.75 /* height where the skin does not fold */
+#define RIS_DRAW_WRINKLE_MM 2.0    /* between black and white of the wrinkle texture, fully squeezed */
+#define RIS_DRAW_FOLD_FROM 0.03    /* shares by which the skin is shorter: folding begins */
+#define RIS_DRAW_FOLD_FULL 0.24    /* and is whole */
 
 /* How the skin is squeezed at a vertex (skin_squeeze.comp): the symmetric M with g . M g = 1 / stretch^2 along the unit
  * direction g. */
 RIS_DRAW_STRUCT(ris_draw_squeeze)
 {
-    ris_draw_v4 own;   /* xx, yy, zz, - */
+    ris_draw_v4 own;   /* xx, yy, zz, share by which the skin is shorter across the painted line */
     ris_draw_v4 mixed; /* xy, yz, zx, - */
 }
 RIS_DRAW_STRUCT_END(ris_draw_squeeze);

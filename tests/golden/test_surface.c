@@ -5,9 +5,11 @@
 #include <stdint.h>
 #include <cmocka.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "draw/fold_mesh.h"
 #include "draw/occlusion.h"
 #include "draw/refine.h"
 #include "risorius/head.h"
@@ -129,13 +131,102 @@ static void test_occlusion(void **state)
     assert_true(seen[2] > 0.95f);
 }
 
+enum { SIDE = 5, TEXELS = 64 };
+
+/* A sheet of 4 x 4 faces of 10 mm with the texture over the whole of it. */
+static ris_mesh sheet(void)
+{
+    char text[8192];
+    size_t used = 0;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        used += (size_t)snprintf(text + used, sizeof text - used, "v %d %d 0\nvt %g %g\n", 10 * (i % SIDE),
+                                 10 * (i / SIDE), (i % SIDE) / 4.0, (i / SIDE) / 4.0);
+    }
+    for (int y = 0; y + 1 < SIDE; y++) {
+        for (int x = 0; x + 1 < SIDE; x++) {
+            int a = y * SIDE + x + 1, b = a + 1, c = b + SIDE, d = a + SIDE;
+            used += (size_t)snprintf(text + used, sizeof text - used, "f %d/%d %d/%d %d/%d %d/%d\n", a, a, b,
+                                     b, c, c, d, d);
+        }
+    }
+    return parse(text);
+}
+
+/* How often the drawn triangles go from vertex a to vertex b. */
+static int times(const ris_refined *in, uint32_t a, uint32_t b)
+{
+    int sum = 0;
+    for (uint32_t i = 0; i < in->drawn_count; i++) {
+        sum += in->corner[in->drawn[i]].vertex == a &&
+               in->corner[in->drawn[i % 3 == 2 ? i - 2 : i + 1]].vertex == b;
+    }
+    return sum;
+}
+
+/* On the edge of the sheet, whose corners a Catmull-Clark step rounds. */
+static bool on_outline(ris_vec3 p)
+{
+    float x = fminf(p.x, 40.0f - p.x), y = fminf(p.y, 40.0f - p.y);
+    return x < 0.01f || y < 0.01f || (x < 1.3f && y < 1.3f);
+}
+
+/* A furrow along x across a sheet: finer triangles about it and nowhere else, no gap, the same area, folds across it. */
+static void test_fold(void **state)
+{
+    (void)state;
+    ris_error err = {0};
+    ris_mesh mesh = sheet();
+    ris_refined refined;
+    ris_vec3 *at;
+    ris_vec4 *fold;
+    uint8_t height[TEXELS * TEXELS];
+    const ris_fold_map map = {TEXELS, TEXELS, height};
+    for (int i = 0; i < TEXELS * TEXELS; i++) {
+        float d = ((float)(i / TEXELS) - 24.0f) / 3.0f;
+        height[i] = (uint8_t)(255.0 * RIS_DRAW_WRINKLE_FLAT - 120.0 * exp(-(double)(d * d)) + 0.5);
+    }
+    assert_int_equal(ris__refine(&mesh, 1, &refined, &err), RIS_OK);
+    const uint32_t before = refined.vertex_count, triangles = refined.drawn_count;
+    assert_int_equal(ris__fold_split(&map, mesh.position, &refined, &err), RIS_OK);
+    assert_true(refined.vertex_count > before + 20 && refined.drawn_count > triangles + 60);
+    at = calloc(refined.vertex_count, sizeof *at);
+    fold = calloc(refined.vertex_count, sizeof *fold);
+    assert_true(at && fold);
+    ris__refined_position(&refined, mesh.position, at);
+    assert_int_equal(ris__fold_lines(&map, &refined, at, fold, &err), RIS_OK);
+    float area = 0.0f, deepest = 0.0f;
+    for (uint32_t i = 0; i < refined.drawn_count; i++) {
+        uint32_t a = refined.corner[refined.drawn[i]].vertex,
+                 b = refined.corner[refined.drawn[i % 3 == 2 ? i - 2 : i + 1]].vertex;
+        ris_vec3 p = at[a], q = at[b];
+        area += 0.5f * (p.x * q.y - p.y * q.x);
+        bool border = on_outline(p) && on_outline(q);
+        assert_int_equal(times(&refined, a, b), 1);
+        assert_true(times(&refined, b, a) == 1 || (border && times(&refined, b, a) == 0));
+    }
+    assert_true(fabsf(area - 1575.0f) < 0.1f); /* 1600 less four rounded corners of 6.25 */
+    for (uint32_t v = 0; v < refined.vertex_count; v++) {
+        float sum = 0.0f;
+        for (uint32_t i = refined.term_start[v]; i < refined.term_start[v + 1]; i++) {
+            sum += refined.term[i].weight;
+        }
+        assert_true(fabsf(sum - 1.0f) < 1e-5f);
+        assert_true(v < before || fabsf(at[v].y - 24.6f) < 11.0f);
+        assert_true(fold[v].w > -0.1f || fabsf(fold[v].y) > 0.9f);
+        deepest = fminf(deepest, fold[v].w);
+    }
+    assert_true(deepest < -0.3f && deepest > -0.7f);
+    free(at);
+    free(fold);
+    ris__refined_finish(&refined);
+    ris_mesh_finish(&mesh);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_cube),
-        cmocka_unit_test(test_border),
-        cmocka_unit_test(test_plain),
-        cmocka_unit_test(test_occlusion),
+        cmocka_unit_test(test_cube),      cmocka_unit_test(test_border), cmocka_unit_test(test_plain),
+        cmocka_unit_test(test_occlusion), cmocka_unit_test(test_fold),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
