@@ -84,10 +84,24 @@ static ris_result measure_mirror(soak *run, ris_soak_id id, ris_error *err)
     return r;
 }
 
+ris_result soak_measure_skin(soak *run, ris_soak_id id, ris_finding *found, ris_error *err)
+{
+    ris_bone_frames frames;
+    for (int b = 0; b < RIS_BONE_SKIN; b++) {
+        ris_sim_bone_transform(run->backend.sim, (ris_bone)b, frames.bone[b]);
+    }
+    ris_result r = ris__measure_pose(run->measurer, run->position, &frames, found, &run->trace, err);
+    for (uint32_t m = 0; !r && m < RIS_MEASURE_MIRROR; m++) {
+        if (run->row[m].measured) {
+            soak_record_finding(run, m, &found[m], id);
+        }
+    }
+    return r;
+}
+
 static ris_result measure_one(soak *run, ris_soak_id id, ris_error *err)
 {
     ris_finding found[RIS_MEASURE_COUNT];
-    ris_bone_frames frames;
     ris_hold held = {0};
     char *text = soak_pose_text(run, id);
     if (!text) {
@@ -98,16 +112,8 @@ static ris_result measure_one(soak *run, ris_soak_id id, ris_error *err)
     if (!r) {
         r = hold(run, run->pose, run->position, &held, err);
     }
-    for (int b = 0; !r && b < RIS_BONE_SKIN; b++) {
-        ris_sim_bone_transform(run->backend.sim, (ris_bone)b, frames.bone[b]);
-    }
     if (!r) {
-        r = ris__measure_pose(run->measurer, run->position, &frames, found, &run->trace, err);
-    }
-    for (uint32_t m = 0; !r && m < RIS_MEASURE_MIRROR; m++) {
-        if (run->row[m].measured) {
-            soak_record_finding(run, m, &found[m], id);
-        }
+        r = soak_measure_skin(run, id, found, err);
     }
     if (!r) {
         const ris_finding speed = {.value = held.at_rest ? 0 : (double)held.speed_mm_s,

@@ -67,6 +67,8 @@ bool soak_row_broken(const soak *run, uint32_t row);
 
 /* Counts a finding of a measure; those above 0 are kept while they are among the worst. */
 void soak_record_finding(soak *run, uint32_t row, const ris_finding *finding, ris_soak_id id);
+/* The skin at run->position measured, all but its mirror: into found (RIS_MEASURE_COUNT) and the rows. */
+ris_result soak_measure_skin(soak *run, ris_soak_id id, ris_finding *found, ris_error *err);
 /* Frames of a motion instead of poses. */
 ris_result soak_motion_open(soak *run, const ris_cli *cli, ris_error *err);
 ris_result soak_motion_measure(soak *run, const ris_cli *cli, ris_error *err);

@@ -58,7 +58,6 @@ static ris_finding fastest(const soak *run)
 static ris_result measure_frame(soak *run, uint32_t frame, bool *out_wild, ris_error *err)
 {
     ris_finding found[RIS_MEASURE_COUNT];
-    ris_bone_frames frames;
     ris_result r = RIS_OK;
     const ris_soak_id id = {RIS_SOAK_FEW, frame};
     for (uint32_t k = 0; k < run->args.every && !r; k++) {
@@ -74,16 +73,8 @@ static ris_result measure_frame(soak *run, uint32_t frame, bool *out_wild, ris_e
     if (!r) {
         r = ris_sim_read(run->backend.sim, RIS_STATE_POSITION, run->position, err);
     }
-    for (int b = 0; !r && b < RIS_BONE_SKIN; b++) {
-        ris_sim_bone_transform(run->backend.sim, (ris_bone)b, frames.bone[b]);
-    }
     if (!r) {
-        r = ris__measure_pose(run->measurer, run->position, &frames, found, &run->trace, err);
-    }
-    for (uint32_t m = 0; !r && m < RIS_MEASURE_MIRROR; m++) {
-        if (run->row[m].measured) {
-            soak_record_finding(run, m, &found[m], id);
-        }
+        r = soak_measure_skin(run, id, found, err);
     }
     if (!r && !*out_wild && found[RIS_MEASURE_FINITE].value == 0) {
         const ris_finding speed = fastest(run);
