@@ -17,6 +17,13 @@
 
 #define ROLL_RAD 1.0f /* turn of the free edge of a lip at roll 1 */
 #define ROLL_MM 1.0f  /* way of the skin before it towards the slit of the mouth */
+/* Where the teeth leave room, all of a lip can be sucked in between them (AU28): it turns further by SUCK_RAD, and the skin
+ * before it comes after by SUCK_MM and over the teeth by SUCK_BACK_MM. */
+#define SUCK_RAD 0.2f
+#define SUCK_MM 9.0f
+#define EDGE 0.9f /* where the lips meet, in widths */
+#define FLAT_MM 3.5f
+#define SUCK_BACK_MM 4.0f
 #define BONE_MM 80.0f /* radius of forehead and brow, about */
 
 /* The lip of a ring rolls about the line between its outer and its inner fibres, where the red begins: the free edge goes
@@ -39,14 +46,21 @@ static ris_vec3 roll_lip(const ris_rig *rig, const ris_muscle *muscle, uint32_t 
     const float width = f_max(v3_length(across), 1e-3f), rest = v3_dot(r, along), down = v3_dot(r, edge),
                 out = v3_dot(r, front);
     const float from_middle = 2.0f * ((float)k + s) / (float)(muscle->point_count - 1) - 1.0f;
-    const float middle = (1.0f - from_middle * from_middle) * (1.0f - from_middle * from_middle);
-    const float roll = rig->roll[muscle->on_jaw] * middle;
+    const float round = 1.0f - from_middle * from_middle;
+    const float roll = rig->roll[muscle->on_jaw] * round * round;
     const float share = f_smoothstep((down / width + 1.0f) / 2.0f);
+    const float suck = f_max(rig->roll[muscle->on_jaw], 0.0f) * rig->suck * round * (2.0f - round);
+    const float after = suck * f_smoothstep((down / width + 2.2f) / 2.2f);
     double c, t;
-    ris__cos_sin((double)(roll * share * ROLL_RAD), &c, &t);
-    const float turned_down = (float)c * down + (float)t * out + ROLL_MM * roll * share;
-    const float turned_out = (float)c * out - (float)t * down;
-    return v3_mad(v3_mad(v3_mad(v3_sub(p, r), rest, along), turned_down, edge), turned_out, front);
+    ris__cos_sin((double)(share * (roll * ROLL_RAD + suck * SUCK_RAD)), &c, &t);
+    const float turned_down = (float)c * down + (float)t * out + ROLL_MM * roll * share + SUCK_MM * after;
+    const float low = f_clamp(0.5f + (EDGE * width - turned_down) / (2.0f * FLAT_MM), 0.0f, 1.0f);
+    const float flat =
+        turned_down < EDGE * width - FLAT_MM ? turned_down : EDGE * width - FLAT_MM * low * low;
+    const float turned_out = (float)c * out - (float)t * down - SUCK_BACK_MM * after;
+    return v3_mad(v3_mad(v3_mad(v3_sub(p, r), rest, along),
+                         turned_down + f_min(3.0f * suck, 1.0f) * (flat - turned_down), edge),
+                  turned_out, front);
 }
 
 static ris_vec3 attached_point(const ris_rig *rig, const ris_muscle *muscle, const ris_attach *attach)
@@ -85,9 +99,9 @@ static float dragged(const ris_rig *rig, const ris_binding *binding, float *full
     for (uint32_t end = 0; end < 2; ++end) {
         const ris_drag *drag = &rig->drag[2 * (size_t)binding->muscle + end];
         const float t = end ? 2.0f * binding->along - 1.0f : 1.0f - 2.0f * binding->along;
-        *full = f_max(*full, drag->strength);
-        if (drag->strength > 0.0f && t > 0.0f) {
-            share = drag->strength * ris__power(t, drag->power);
+        *full = f_max(*full, drag->corner.strength);
+        if (drag->corner.strength > 0.0f && t > 0.0f) {
+            share = drag->corner.strength * ris__power(t, drag->corner.power);
         }
     }
     return share;

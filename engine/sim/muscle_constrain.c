@@ -96,21 +96,45 @@ static void resolve_literal(ris_rig *rig, const ris_group *group)
     }
 }
 
+/* How far the end of a member of a corner has moved, and the end of a ring that lies there. */
+static ris_vec3 moved_by(const ris_rig *rig, const ris_group_point *member)
+{
+    const ris_muscle *muscle = &rig->model->muscle[member->muscle];
+    return v3_sub(ris__muscle_point(rig->model, muscle, rig->q, member->point),
+                  ris__muscle_point(rig->model, muscle, rig->p, member->point));
+}
+
+static ris_drag *drag_of(ris_rig *rig, const ris_group_point *member)
+{
+    return &rig->drag[2 * (size_t)member->muscle + (member->point > 0)];
+}
+
+/* Farthest way along side that a linear muscle of a corner would move it by itself, or 0. */
+static float pulled_by(const ris_rig *rig, const ris_group *group, ris_vec3 side)
+{
+    float farthest = 0.0f;
+    for (uint32_t k = 0; k < group->point_count; ++k) {
+        const ris_group_point *member = &rig->model->group_point[group->first_point + k];
+        if (rig->model->muscle[member->muscle].kind == RIS_MUSCLE_LINEAR) {
+            farthest = f_max(farthest, v3_dot(side, moved_by(rig, member)));
+        }
+    }
+    return farthest;
+}
+
 /* Default tissue: the corner moves by the mean displacement of its members, weighted with 1 + lambda x
  * activation (activation, not contraction, because contractions end at max_shortening, far below 1). */
-static void resolve_corner(ris_rig *rig, const ris_group *group)
+static ris_corner measure_corner(ris_rig *rig, const ris_group *group)
 {
     const ris_model *model = rig->model;
     const ris_group_point *member = model->group_point + group->first_point;
     const float lambda = model->head->tissue.constraint_lambda;
-    ris_vec3 moved[RIS_GROUP_MAX] = {{0}}, sum = {0};
+    ris_vec3 sum = {0};
     float weight = 0.0f, pulling = 0.0f, power = 0.0f;
     for (uint32_t k = 0; k < group->point_count; ++k) {
         const ris_muscle *muscle = &model->muscle[member[k].muscle];
         const float activation = rig->activation[member[k].muscle], w = 1.0f + lambda * activation;
-        moved[k] = v3_sub(ris__muscle_point(model, muscle, rig->q, member[k].point),
-                          ris__muscle_point(model, muscle, rig->p, member[k].point));
-        sum = v3_mad(sum, w, moved[k]);
+        sum = v3_mad(sum, w, moved_by(rig, &member[k]));
         weight += w;
         if (muscle->lip_drag_power > 0.0f) {
             pulling += activation;
@@ -118,18 +142,64 @@ static void resolve_corner(ris_rig *rig, const ris_group *group)
         }
     }
     if (!(pulling > 0.0f)) {
+        return (ris_corner){{0}, 0.0f, 0.0f, 0.0f};
+    }
+    ris_corner corner = {v3(sum.x / weight, sum.y / weight, sum.z / weight), 0.0f, power / pulling,
+                         f_min(pulling / ACTIVITY_FULL, 1.0f)};
+    for (uint32_t k = 0; k < group->point_count; ++k) {
+        if (model->muscle[member[k].muscle].kind == RIS_MUSCLE_SPHINCTER) {
+            const ris_vec3 side = ris__ring_side(model, &model->muscle[member[k].muscle]);
+            corner.outward = pulled_by(rig, group, member[k].point > 0 ? side : v3_scale(side, -1.0f));
+            drag_of(rig, &member[k])->corner = corner;
+        }
+    }
+    return corner;
+}
+
+/* A ring that contracts while muscles hold one of its corners draws to that corner, not to its middle: all of it, and so
+ * both corners, goes the way of the farthest pull outwards, as far as the ring is taut. Pulls of both sides cancel. */
+static ris_vec3 carried_along(const ris_rig *rig, uint32_t m)
+{
+    const ris_model *model = rig->model;
+    const ris_muscle *muscle = &model->muscle[m];
+    const ris_drag *drag = &rig->drag[2 * (size_t)m];
+    const ris_vec3 side = ris__ring_side(model, muscle);
+    const float taut = muscle->max_shortening > 0.0f ? rig->contraction[m] / muscle->max_shortening : 0.0f;
+    return v3_scale(side, taut * (drag[1].corner.outward - drag[0].corner.outward));
+}
+
+/* Of a corner: the mean of its rings. */
+static ris_vec3 carried_by(const ris_rig *rig, const ris_group *group)
+{
+    ris_vec3 sum = {0};
+    float rings = 0.0f;
+    for (uint32_t k = 0; k < group->point_count; ++k) {
+        const uint32_t m = rig->model->group_point[group->first_point + k].muscle;
+        if (rig->model->muscle[m].kind == RIS_MUSCLE_SPHINCTER) {
+            sum = v3_add(sum, carried_along(rig, m));
+            rings += 1.0f;
+        }
+    }
+    return v3_scale(sum, rings > 0.0f ? 1.0f / rings : 0.0f);
+}
+
+static void resolve_corner(ris_rig *rig, const ris_group *group, ris_corner corner)
+{
+    const ris_model *model = rig->model;
+    const ris_group_point *member = model->group_point + group->first_point;
+    if (!(corner.strength > 0.0f)) {
         return;
     }
-    const ris_vec3 corner = v3(sum.x / weight, sum.y / weight, sum.z / weight);
+    const ris_vec3 carried = carried_by(rig, group);
     for (uint32_t k = 0; k < group->point_count; ++k) {
+        const ris_vec3 lacks = v3_sub(corner.moved, moved_by(rig, &member[k]));
         if (model->muscle[member[k].muscle].kind == RIS_MUSCLE_LINEAR) {
-            displace_muscle(rig, member[k].muscle, v3_sub(corner, moved[k]));
+            displace_muscle(rig, member[k].muscle, v3_add(lacks, carried));
             continue;
         }
-        ris_drag *drag = &rig->drag[2 * (size_t)member[k].muscle + (member[k].point > 0)];
-        drag->displacement = v3_sub(corner, moved[k]);
-        drag->power = power / pulling;
-        drag->strength = f_min(pulling / ACTIVITY_FULL, 1.0f);
+        ris_drag *drag = drag_of(rig, &member[k]);
+        drag->displacement = lacks;
+        drag->carried = carried;
     }
 }
 
@@ -139,6 +209,7 @@ static void drag_ring(ris_rig *rig, uint32_t m)
     const ris_model *model = rig->model;
     const ris_muscle *muscle = &model->muscle[m];
     const ris_drag *drag = rig->drag + 2 * (size_t)m;
+    const ris_vec3 carried = v3_scale(v3_add(drag[0].carried, drag[1].carried), 0.5f);
     for (uint32_t f = 0; f < muscle->fiber_count; ++f) {
         const uint32_t first = model->fiber[muscle->first_fiber + f].first_point;
         float total = 0.0f, length = 0.0f;
@@ -150,8 +221,9 @@ static void drag_ring(ris_rig *rig, uint32_t m)
             const float along = 2.0f * length / total - 1.0f;
             const ris_drag *end = drag + (along > 0.0f);
             const float t = f_min(along > 0.0f ? along : -along, 1.0f);
-            rig->q[first + i] =
-                v3_mad(rig->q[first + i], end->strength * ris__power(t, end->power), end->displacement);
+            ris_vec3 *q = &rig->q[first + i];
+            *q = v3_mad(*q, end->corner.strength * ris__power(t, end->corner.power), end->displacement);
+            *q = v3_add(*q, carried);
         }
     }
 }
@@ -187,11 +259,15 @@ void ris__muscle_constrain(ris_rig *rig)
         return;
     }
     for (uint32_t g = 0; g < model->group_count; ++g) {
-        resolve_corner(rig, &model->group[g]);
+        rig->corner[g] = measure_corner(rig, &model->group[g]);
+    }
+    for (uint32_t g = 0; g < model->group_count; ++g) {
+        resolve_corner(rig, &model->group[g], rig->corner[g]);
     }
     for (uint32_t m = 0; m < model->muscle_count; ++m) {
         if (model->muscle[m].kind == RIS_MUSCLE_SPHINCTER &&
-            (rig->drag[2 * (size_t)m].strength > 0.0f || rig->drag[2 * (size_t)m + 1].strength > 0.0f)) {
+            (rig->drag[2 * (size_t)m].corner.strength > 0.0f ||
+             rig->drag[2 * (size_t)m + 1].corner.strength > 0.0f)) {
             drag_ring(rig, m);
         }
     }

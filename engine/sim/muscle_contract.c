@@ -10,6 +10,7 @@
 
 #define LARGEST_CONTRACTION 0.95f
 #define SMALLEST_PARAMETER 0.01f
+#define ROOM_MM 6.0f       /* way of the lower incisors that lets a lip in between the teeth */
 #define ACTIVITY_FULL 0.1f /* activation from which on a muscle counts fully among those that act */
 
 void ris__contract_linear(const ris_vec3 *p, uint32_t n, float c, ris_vec3 *q)
@@ -92,10 +93,10 @@ ris_vec3 ris__contract_lip(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, ris_vec3 side, 
     const float inner = f > 1 ? (float)j / (float)(f - 1) : 1.0f;
     const ris_vec3 across = v3_sub(from, v3_scale(axis, out));
     const ris_vec3 beside = v3_scale(side, v3_dot(side, across)), above = v3_sub(across, beside);
-    ris_vec3 q = v3_mad(p, -c, beside);
+    const float forward = 1.0f - RIS__LIP_TIED * tie;
+    ris_vec3 q = v3_mad(p, -c * (1.0f + RIS__LIP_ARCH * f_max(forward, 0.0f)), beside);
     const float thicken = RIS__LIP_ABOVE_OUTER + (RIS__LIP_ABOVE_INNER - RIS__LIP_ABOVE_OUTER) * inner;
     q = v3_mad(q, -c * (thicken + tie * (RIS__LIP_ABOVE_TIED - thicken)), above);
-    const float forward = 1.0f - RIS__LIP_TIED * tie;
     return v3_mad(q, forward * c * (RIS__LIP_OUTER + (1.0f - RIS__LIP_OUTER) * inner) * (goal - out), axis);
 }
 
@@ -112,8 +113,7 @@ ris_vec3 ris__protrude(ris_vec3 a0, ris_vec3 a1, uint32_t j, uint32_t f, float a
     return v3_scale(v3_sub(a1, a0), RIS__PROTRUDE * share);
 }
 
-/* Unit vector from one end of a sphincter to the other, across its axis; zero for a closed ring. */
-static ris_vec3 ring_side(const ris_model *model, const ris_muscle *muscle)
+ris_vec3 ris__ring_side(const ris_model *model, const ris_muscle *muscle)
 {
     const ris_vec3 none = {0}, axis = v3_unit_or(v3_sub(muscle->axis[1], muscle->axis[0]), none);
     const ris_vec3 d = v3_sub(ris__muscle_point(model, muscle, model->fiber_point, muscle->point_count - 1),
@@ -125,6 +125,7 @@ static ris_vec3 ring_side(const ris_model *model, const ris_muscle *muscle)
 typedef struct ring_pose {
     ris_vec3 axis[2], side;
     float c, protrude; /* 0..1 */
+    float arch;        /* 0..1, how far both lips protrude: one alone is held at its ends by the other */
     float tie[2];      /* of the halves of a lip to the bone, 0..1 */
     ris_vec3 push[2];  /* of its halves, at the middle of the lip, mm */
     float pushed;      /* activation of the strongest pusher, 0..1 */
@@ -136,11 +137,18 @@ static ring_pose pose_ring(const ris_rig *rig, uint32_t m, float c, const float 
     const ris_model *model = rig->model;
     const ris_muscle *muscle = &model->muscle[m];
     ring_pose ring = {.axis = {muscle->axis[0], muscle->axis[1]},
-                      .side = ring_side(model, muscle),
+                      .side = ris__ring_side(model, muscle),
                       .c = c,
                       .literal = (model->push.flags & RIS_TISSUE_FLAG_KAEHLER) != 0};
     if (muscle->protrude_channel < model->channel_count) {
         ring.protrude = f_clamp(pose[muscle->protrude_channel], 0.0f, 1.0f);
+    }
+    ring.arch = ring.protrude;
+    for (uint32_t k = 0; k < model->muscle_count; ++k) {
+        const uint32_t channel = model->muscle[k].protrude_channel;
+        if (ris__muscle_rolls(&model->muscle[k]) && channel < model->channel_count) {
+            ring.arch = f_min(ring.arch, f_clamp(pose[channel], 0.0f, 1.0f));
+        }
     }
     if (ring.literal && muscle->on_jaw) {
         ring.axis[0] = ris__rigid_apply(&rig->jaw, ring.axis[0]);
@@ -185,6 +193,8 @@ static ris_vec3 contract_ring(const ris_muscle *muscle, const ring_pose *ring, r
     if (ring->protrude > 0.0f && !ring->literal) {
         const float middle = ring->lip ? along : 0.5f; /* a closed ring has no ends to stay */
         q = v3_mad(q, ring->protrude, ris__protrude(axis[0], axis[1], f, muscle->fiber_count, middle));
+        const float beside = v3_dot(ring->side, v3_sub(p, axis[0]));
+        q = v3_mad(q, -RIS__PROTRUDE_ARCH * ring->arch * beside, ring->side);
     }
     return q;
 }
@@ -196,6 +206,8 @@ void ris__muscle_contract(ris_rig *rig, const float *pose)
         rig->roll[side] = f_clamp(pose[rig->first_beside + RIS__LIP_UPPER_ROLL + side], -1.0f, 1.0f);
         rig->puff[side] = f_clamp(pose[rig->first_beside + RIS__CHEEK_PUFF_L + side], -1.0f, 1.0f);
     }
+    const ris_vec3 incisor = model->head->jaw.incisor;
+    rig->suck = 0.4f + 0.6f * f_smoothstep((incisor.y - ris__rigid_apply(&rig->jaw, incisor).y) / ROOM_MM);
     rig->close = f_clamp(pose[rig->first_beside + RIS__LIPS_CLOSE], 0.0f, 1.0f);
     const bool literal = (model->push.flags & RIS_TISSUE_FLAG_KAEHLER) != 0;
     for (uint32_t m = 0; m < model->muscle_count; ++m) {

@@ -31,6 +31,7 @@ ris_result ris__rig_init(ris_rig *rig, const ris_model *model, ris_error *err)
         {&rig->contraction, model->muscle_count, sizeof *rig->contraction},
         {&rig->activation, model->muscle_count, sizeof *rig->activation},
         {&rig->activity, model->muscle_count, sizeof *rig->activity},
+        {&rig->corner, model->group_count, sizeof *rig->corner},
         {&rig->drag, 2 * (size_t)model->muscle_count, sizeof *rig->drag},
         {&rig->squeeze, model->muscle_count, sizeof *rig->squeeze},
         {&rig->bulge, model->segment_count, sizeof *rig->bulge},
@@ -87,6 +88,7 @@ void ris__rig_finish(ris_rig *rig)
     free(rig->contraction);
     free(rig->activation);
     free(rig->activity);
+    free(rig->corner);
     free(rig->drag);
     free(rig->squeeze);
     free(rig->bulge);

@@ -41,11 +41,19 @@ typedef struct ris_rigid {
     bool identity;
 } ris_rigid;
 
+/* A corner of the mouth, what all that ends there moves it by. */
+typedef struct ris_corner {
+    ris_vec3 moved; /* mm */
+    float outward;  /* from a ring, the farthest way of those that pull there, mm */
+    float power;    /* activation-weighted mean of the pulling muscles' lip_drag_power */
+    float strength; /* 0..1, activity of the pull */
+} ris_corner;
+
 /* How far a corner of the mouth drags the lips: one for each end of a sphincter. */
 typedef struct ris_drag {
-    ris_vec3 displacement; /* mm */
-    float power;           /* activation-weighted mean of the pulling muscles' lip_drag_power */
-    float strength;        /* 0..1, activity of the pull */
+    ris_corner corner;
+    ris_vec3 displacement; /* what the end lacks to be where its corner is, mm */
+    ris_vec3 carried;      /* what a taut ring brings through from the other corner, mm */
 } ris_drag;
 
 /* A turn about +x. */
@@ -106,9 +114,11 @@ typedef struct ris_rig {
     float puff[2];      /* pressure in the left and right cheek, -1..1 */
     float close;        /* of the lips over an open jaw, 0..1 */
     float roll[2];      /* upper and lower lip, 1 = in, -1 = out */
+    float suck;         /* how far the teeth make room for a lip that rolls in, 0..1 */
     /* muscle_constrain */
-    ris_drag *drag;    /* (2 x muscle_count): first and last end of sphincters */
-    bool *constrained; /* per fibre point (fiber_point_count) */
+    ris_corner *corner; /* of the mouth (group_count) */
+    ris_drag *drag;     /* (2 x muscle_count): first and last end of sphincters */
+    bool *constrained;  /* per fibre point (fiber_point_count) */
     ris_vec3 *network_x,
         *network_v;      /* kaehler: positions, and 3 x velocities and forces (network_node_count) */
     float *network_rest; /* mm (network_spring_count) */
@@ -211,17 +221,23 @@ ris_vec3 ris__contract_sphincter(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, float a, 
 /* tie 0..1: how far incisivi tie the ring to the bone; then it presses the lip flat against the teeth. */
 #define RIS__LIP_ABOVE_TIED 0.6f
 #define RIS__LIP_TIED 1.25f
+#define RIS__LIP_ARCH                                                                                        \
+    0.3f /* the chord of a lip that comes forward shortens by so much more than its fibres do */
 #define RIS__LIP_OUTER 0.6f
 #define RIS__LIP_ABOVE_OUTER (-0.5f)
 #define RIS__LIP_ABOVE_INNER 0.5f
 ris_vec3 ris__contract_lip(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, ris_vec3 side, uint32_t j, uint32_t f,
                            float c, float tie);
+/* Unit vector from one end of a sphincter to the other, across its axis; zero for a closed ring. */
+ris_vec3 ris__ring_side(const ris_model *model, const ris_muscle *muscle);
 /* 1 in the middle of a lip, 0 at its ends. */
 float ris__lip_middle(float along);
 /* What full protrusion moves fibre j of f by in the default tissue: along the axis, by the share RIS__PROTRUDE of its length in the
  * middle of the ring, less the outer fibres, not at all the ends. along: 0 at one end, 1 at the other. */
 #define RIS__PROTRUDE 0.13f
 ris_vec3 ris__protrude(ris_vec3 a0, ris_vec3 a1, uint32_t j, uint32_t f, float along);
+/* Fibres keep their length: where both lips protrude their ends come in by this share of the way to the axis. */
+#define RIS__PROTRUDE_ARCH 0.12f
 /* A sphincter that closes on a line: p goes the share c of its way to the nearest point of a0-a1. */
 ris_vec3 ris__contract_slit(ris_vec3 p, ris_vec3 a0, ris_vec3 a1, float c);
 /* KA-33. Moves n points to their rest distance from the centroid weighted with 1 + lambda c; rest gives
