@@ -17,14 +17,22 @@
 
 #define ROLL_RAD 1.0f /* turn of the free edge of a lip at roll 1 */
 #define ROLL_MM 1.0f  /* way of the skin before it towards the slit of the mouth */
-/* Where the teeth leave room, all of a lip can be sucked in between them (AU28): it turns further by SUCK_RAD, and the skin
- * before it comes after by SUCK_MM and over the teeth by SUCK_BACK_MM. */
+/* Where the teeth leave room a lip can be sucked in between them (AU28): it turns on, the skin before it comes after and goes
+ * back over the teeth; what would go past the other lip is flattened against it. */
 #define SUCK_RAD 0.2f
 #define SUCK_MM 9.0f
-#define EDGE 0.9f /* where the lips meet, in widths */
-#define FLAT_MM 3.5f
 #define SUCK_BACK_MM 4.0f
-#define BONE_MM 80.0f /* radius of forehead and brow, about */
+#define SUCK_FROM 2.2f /* from so many widths of the ring before the line it rolls about */
+#define EDGE 0.9f      /* where the other lip is, in widths behind that line */
+#define FLAT_MM 3.5f   /* over so much */
+#define BONE_MM 80.0f  /* radius of forehead and brow, about */
+
+/* down, but not past edge: a smooth minimum. */
+static float flattened(float down, float edge)
+{
+    const float left = f_clamp(0.5f + (edge - down) / (2.0f * FLAT_MM), 0.0f, 1.0f);
+    return down < edge - FLAT_MM ? down : edge - FLAT_MM * left * left;
+}
 
 /* The lip of a ring rolls about the line between its outer and its inner fibres, where the red begins: the free edge goes
  * back over the teeth, or out when roll is negative; the skin before it follows. Not at the corners. p: a point held by
@@ -50,13 +58,11 @@ static ris_vec3 roll_lip(const ris_rig *rig, const ris_muscle *muscle, uint32_t 
     const float roll = rig->roll[muscle->on_jaw] * round * round;
     const float share = f_smoothstep((down / width + 1.0f) / 2.0f);
     const float suck = f_max(rig->roll[muscle->on_jaw], 0.0f) * rig->suck * round * (2.0f - round);
-    const float after = suck * f_smoothstep((down / width + 2.2f) / 2.2f);
+    const float after = suck * f_smoothstep(down / (width * SUCK_FROM) + 1.0f);
     double c, t;
     ris__cos_sin((double)(share * (roll * ROLL_RAD + suck * SUCK_RAD)), &c, &t);
     const float turned_down = (float)c * down + (float)t * out + ROLL_MM * roll * share + SUCK_MM * after;
-    const float low = f_clamp(0.5f + (EDGE * width - turned_down) / (2.0f * FLAT_MM), 0.0f, 1.0f);
-    const float flat =
-        turned_down < EDGE * width - FLAT_MM ? turned_down : EDGE * width - FLAT_MM * low * low;
+    const float flat = flattened(turned_down, EDGE * width);
     const float turned_out = (float)c * out - (float)t * down - SUCK_BACK_MM * after;
     return v3_mad(v3_mad(v3_mad(v3_sub(p, r), rest, along),
                          turned_down + f_min(3.0f * suck, 1.0f) * (flat - turned_down), edge),
