@@ -22,7 +22,8 @@ void main()
     out_uv = vec2(c.u, c.v);
     out_rest = rest[c.vertex];
     if (out_rest.w < 0.0) { // what parting lips uncover is lit as far as they part
-        vec3 into = through_opening(RIS_DRAW_RIM_MOUTH, at[c.vertex].xyz);
+        // a little behind it, so that the rim itself lies within
+        vec3 into = through_opening(RIS_DRAW_RIM_MOUTH, at[c.vertex].xyz - vec3(0.0, 0.0, 2.5));
         float seen = length(into), share = seen * clamp((dot(facing[c.vertex].xyz, into) / max(seen, 1e-4) + 0.25) / 1.25, 0.0, 1.0);
         out_rest.w = max(-out_rest.w, into.z > 0.0 ? share * (1.7 - 0.7 * share) : 0.0);
     }

@@ -44,5 +44,6 @@ float between_lids(vec3 world, vec3 normal)
     }
     vec3 into = through_opening(which, from_world(world));
     float size = length(into), share = dot(normal, to_world(into)) / max(size, 1e-4);
-    return share < 0.0 ? 1.0 : clamp(1.15 * size * clamp((share + 0.5) / 1.3, 0.0, 1.0), 0.0, 1.0);
+    float open = clamp(1.2 * size * clamp((share + 0.5) / 1.3, 0.0, 1.0), 0.0, 1.0);
+    return share < 0.0 ? 1.0 : open * open; // twice: what the lids let in, and what lashes leave of it
 }
