@@ -9,8 +9,8 @@
 
 #define FAR_WEIGHT 0.02f
 #define RIM_EDGES 2
-#define PASSES 200
-#define RIM_PASSES 12
+#define PASSES 200    /* of smoothing over the springs: about 32 mm */
+#define RIM_PASSES 12 /* more, with the lining held: the lips go over into it without a step */
 
 /* The lining of the mouth behind the rim of the lips is bound to its bone: over RIM_EDGES edges it gives up the smoothed
  * weight for its own. done counts them (0 outside, or not yet reached). */
