@@ -132,6 +132,8 @@ static void pose_jaw(ris_rig *rig, const float *pose)
                    ? turn_and_shift(&head->jaw, open, forward, side)
                    : ris__jaw_path(&head->jaw, &head->guidance, open, forward, side);
     rig->slides = forward != 0.0f || side != 0.0f;
+    rig->meets =
+        (1.0f - f_clamp(forward, 0.0f, 1.0f)) * (1.0f - f_clamp(side < 0.0f ? -side : side, 0.0f, 1.0f));
     rig->jaw_open = rig->slides ? ris__jaw_path(&head->jaw, &head->guidance, open, 0.0f, 0.0f) : rig->jaw;
 }
 

@@ -199,6 +199,22 @@ static ris_vec3 contract_ring(const ris_muscle *muscle, const ring_pose *ring, r
     return q;
 }
 
+/* How far a lip that rolls in gets in between the teeth, 0..1: they must part and stand above each other, and it must not
+ * be held out in front of them. */
+static float room_for_lips(const ris_rig *rig, const float *pose)
+{
+    const ris_model *model = rig->model;
+    const ris_vec3 incisor = model->head->jaw.incisor;
+    float room = 0.4f + 0.6f * f_smoothstep((incisor.y - ris__rigid_apply(&rig->jaw, incisor).y) / ROOM_MM);
+    for (uint32_t m = 0; m < model->muscle_count; ++m) {
+        const uint32_t channel = model->muscle[m].protrude_channel;
+        if (channel < model->channel_count) {
+            room *= 1.0f - f_clamp(pose[channel], 0.0f, 1.0f);
+        }
+    }
+    return room * rig->meets;
+}
+
 void ris__muscle_contract(ris_rig *rig, const float *pose)
 {
     const ris_model *model = rig->model;
@@ -206,8 +222,7 @@ void ris__muscle_contract(ris_rig *rig, const float *pose)
         rig->roll[side] = f_clamp(pose[rig->first_beside + RIS__LIP_UPPER_ROLL + side], -1.0f, 1.0f);
         rig->puff[side] = f_clamp(pose[rig->first_beside + RIS__CHEEK_PUFF_L + side], -1.0f, 1.0f);
     }
-    const ris_vec3 incisor = model->head->jaw.incisor;
-    rig->suck = 0.4f + 0.6f * f_smoothstep((incisor.y - ris__rigid_apply(&rig->jaw, incisor).y) / ROOM_MM);
+    rig->suck = room_for_lips(rig, pose);
     rig->close = f_clamp(pose[rig->first_beside + RIS__LIPS_CLOSE], 0.0f, 1.0f);
     const bool literal = (model->push.flags & RIS_TISSUE_FLAG_KAEHLER) != 0;
     for (uint32_t m = 0; m < model->muscle_count; ++m) {

@@ -105,6 +105,8 @@ typedef struct ris_rig {
     ris_rigid jaw, eye[2], head;
     ris_rigid jaw_open; /* the jaw without its slide; equal to jaw when it does not slide */
     bool slides;
+    float
+        meets; /* 1 where the teeth stand above each other, 0 where the jaw is thrust or shifted as far as it goes */
     ris_vec3 *p; /* rest control points, turned with the jaw in the kaehler tissue (fiber_point_count) */
     /* muscle_contract */
     float *contraction; /* c per muscle */
