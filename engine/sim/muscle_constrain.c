@@ -157,7 +157,8 @@ static ris_corner measure_corner(ris_rig *rig, const ris_group *group)
 }
 
 /* A ring that contracts while muscles hold one of its corners draws to that corner, not to its middle: all of it, and so
- * both corners, goes the way of the farthest pull outwards, as far as the ring is taut. Pulls of both sides cancel. */
+ * both corners, goes the way of the farthest pull outwards, as far as the ring is taut. Pulls of both sides cancel: a
+ * corner that is pulled back, were it half as far, holds the ring where it is. */
 static ris_vec3 carried_along(const ris_rig *rig, uint32_t m)
 {
     const ris_model *model = rig->model;
@@ -165,7 +166,13 @@ static ris_vec3 carried_along(const ris_rig *rig, uint32_t m)
     const ris_drag *drag = &rig->drag[2 * (size_t)m];
     const ris_vec3 side = ris__ring_side(model, muscle);
     const float taut = muscle->max_shortening > 0.0f ? rig->contraction[m] / muscle->max_shortening : 0.0f;
-    return v3_scale(side, taut * (drag[1].corner.outward - drag[0].corner.outward));
+    const float left = drag[1].corner.outward, right = drag[0].corner.outward, most = f_max(left, right);
+    if (!(most > 0.0f)) {
+        return v3(0.0f, 0.0f, 0.0f);
+    }
+    const float free =
+        (left - right) / most; /* a corner that pulls back, were it by half, holds the ring where it is */
+    return v3_scale(side, taut * (left - right) * (free * free * free * free));
 }
 
 /* Of a corner: the mean of its rings. */
