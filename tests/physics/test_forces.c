@@ -207,21 +207,28 @@ static void normal_and_tangential_anchor(void **state)
     close_world(&w);
 }
 
-/* Bending: the force is minus the gradient of sum k/2 |L(x - x0)|^2 over the moving nodes, by central
- * differences. */
-static void bending_is_the_gradient(void **state)
+/* A field without springs, anchors of its own and muscles; radius 0 is flat. */
+static ris_model *umbrellas_alone(uint32_t columns, uint32_t rows, float spacing_mm, float radius_mm)
 {
-    (void)state;
     ris_scene_def def = ris_default_scene_def();
-    def.columns = 7;
-    def.rows = 6;
-    def.spacing_mm = 3;
-    def.radius_mm = 30;
+    def.columns = columns;
+    def.rows = rows;
+    def.spacing_mm = spacing_mm;
+    def.radius_mm = radius_mm;
     def.rig = false;
     def.tissue.modulus[0] = def.tissue.modulus[1] = 0.0f;
     def.tissue.anchor_region_count = 0;
     ris_model *model = NULL;
     need(ris_scene_model(&def, &model, &err));
+    return model;
+}
+
+/* Bending: the force is minus the gradient of sum k/2 |L(x - x0)|^2 over the moving nodes, by central
+ * differences. */
+static void bending_is_the_gradient(void **state)
+{
+    (void)state;
+    ris_model *model = umbrellas_alone(7, 6, 3, 30);
     world w = open_world(model);
     uint32_t seed = 7;
     for (uint32_t i = 0; i < model->node_count; ++i) {
@@ -259,15 +266,8 @@ static void bending_is_the_gradient(void **state)
 /* Largest bending force at the middle of a flat field of 80 mm lifted to a cosine of 80 mm, per mm^2 of skin. */
 static double bending_of_a_wave(float spacing_mm)
 {
-    ris_scene_def def = ris_default_scene_def();
-    def.columns = def.rows = (uint32_t)(80.0f / spacing_mm) + 1;
-    def.spacing_mm = spacing_mm;
-    def.radius_mm = 0;
-    def.rig = false;
-    def.tissue.modulus[0] = def.tissue.modulus[1] = 0.0f;
-    def.tissue.anchor_region_count = 0;
-    ris_model *model = NULL;
-    need(ris_scene_model(&def, &model, &err));
+    const uint32_t nodes = (uint32_t)(80.0f / spacing_mm) + 1;
+    ris_model *model = umbrellas_alone(nodes, nodes, spacing_mm, 0);
     world w = open_world(model);
     const ris_vec4 *rest = model->rest_position;
     uint32_t middle = 0;
