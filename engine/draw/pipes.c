@@ -45,16 +45,16 @@ static ris_result create_compute(ris_draw *draw, ris_error *err)
     }
     RIS_TRY(ris_vk_layout_create(device, draw->compute_sets.layout, VK_SHADER_STAGE_COMPUTE_BIT,
                                  sizeof(ris_draw_count), &draw->compute_layout, err));
-    RIS_TRY(ris_vk_compute_create(device, draw->compute_layout, RIS_VK_CODE(ris_spv_refine_comp),
+    RIS_TRY(ris_vk_compute_create(device, draw->compute_layout, RIS_VK_CODE(ris_spv_refine_comp), NULL,
                                   "draw refine", &draw->refine, err));
     RIS_TRY(ris_vk_compute_create(device, draw->compute_layout, RIS_VK_CODE(ris_spv_surface_normal_comp),
-                                  "draw normal", &draw->normal, err));
-    RIS_TRY(ris_vk_compute_create(device, draw->compute_layout, RIS_VK_CODE(ris_spv_skin_squeeze_comp),
+                                  NULL, "draw normal", &draw->normal, err));
+    RIS_TRY(ris_vk_compute_create(device, draw->compute_layout, RIS_VK_CODE(ris_spv_skin_squeeze_comp), NULL,
                                   "draw squeeze", &draw->squeeze, err));
-    RIS_TRY(ris_vk_compute_create(device, draw->compute_layout, RIS_VK_CODE(ris_spv_fold_comp), "draw fold",
-                                  &draw->fold, err));
-    RIS_TRY(ris_vk_compute_create(device, draw->compute_layout, RIS_VK_CODE(ris_spv_ride_comp), "draw ride",
-                                  &draw->ride, err));
+    RIS_TRY(ris_vk_compute_create(device, draw->compute_layout, RIS_VK_CODE(ris_spv_fold_comp), NULL,
+                                  "draw fold", &draw->fold, err));
+    RIS_TRY(ris_vk_compute_create(device, draw->compute_layout, RIS_VK_CODE(ris_spv_ride_comp), NULL,
+                                  "draw ride", &draw->ride, err));
 fail:
     return result;
 }

@@ -406,7 +406,8 @@ static ris_result list_touches(ris_bake *bake, const bool *rim, ris_contact_node
     return result;
 }
 
-/* Nodes of lips first, then by number of bodies: neighbours in the list take equally long, which wide devices like. */
+/* Nodes of lips first, then those of bodies, each by the length of their lists: neighbours take equally long, which wide
+ * devices like. */
 static int compare_work(const void *a, const void *b)
 {
     const ris_contact_node *p = a, *q = b;
@@ -421,26 +422,34 @@ static int compare_work(const void *a, const void *b)
     return p->node < q->node ? -1 : p->node > q->node;
 }
 
+static ris_result add_contact(ris_model *model, const ris_contact_node *contact, ris_error *err)
+{
+    const ris_result result =
+        reserve(&model->contact_node, model->contact_node_count, sizeof *model->contact_node, err);
+    if (result == RIS_OK) {
+        model->contact_node[model->contact_node_count++] = *contact;
+    }
+    return result;
+}
+
 static ris_result list_nodes(ris_bake *bake, const uint8_t *lip, const bool *rim, ris_error *err)
 {
     ris_model *model = bake->model;
     ris_result result = RIS_OK;
     for (uint32_t i = 0; i < model->node_count && result == RIS_OK; ++i) {
-        ris_contact_node contact = {.node = i};
+        ris_contact_node lips = {.node = i}, bodies = {.node = i};
         if (!bake->moving[i]) {
             continue;
         }
-        result = list_pairs(model, lip, &contact, err);
-        if (result == RIS_OK) {
-            result = list_touches(bake, rim, &contact, err);
+        result = list_pairs(model, lip, &lips, err);
+        if (result == RIS_OK && lips.lip_end > lips.lip_first) {
+            result = add_contact(model, &lips, err);
         }
-        if (result == RIS_OK &&
-            (contact.lip_end > contact.lip_first || contact.touch_end > contact.touch_first)) {
-            result =
-                reserve(&model->contact_node, model->contact_node_count, sizeof *model->contact_node, err);
-            if (result == RIS_OK) {
-                model->contact_node[model->contact_node_count++] = contact;
-            }
+        if (result == RIS_OK) {
+            result = list_touches(bake, rim, &bodies, err);
+        }
+        if (result == RIS_OK && bodies.touch_end > bodies.touch_first) {
+            result = add_contact(model, &bodies, err);
         }
     }
     if (result == RIS_OK && model->contact_node_count) {

@@ -157,6 +157,7 @@ void ris_model_destroy(ris_model *model)
         return;
     }
     free(model->rest_position);
+    free(model->moving);
     free(model->spring_start);
     free(model->half_spring);
     free(model->ring_start);

@@ -42,6 +42,8 @@ ris_result ris__bake_mass(ris_bake *bake, ris_error *err);
 float ris__bend_stiffness(const ris_bake *bake, uint32_t i);
 /* KA-10, KA-11 and the bending umbrella: spring_start, half_spring. */
 ris_result ris__bake_springs(ris_bake *bake, ris_error *err);
+/* The list `moving` of nodes with an inverse mass. Springs must be baked. Errors: RIS_ERROR_MEMORY. */
+ris_result ris__list_moving(ris_model *model, ris_error *err);
 /* jaw_slide_weight. */
 ris_result ris__bake_jaw_slide(ris_bake *bake, ris_error *err);
 /* KA-38, KA-39: grids below the skin, refined. */

@@ -46,7 +46,6 @@ ris_result ris__bake_mass(ris_bake *bake, ris_error *err)
     for (uint32_t i = 0; i < n; ++i) {
         model->rest_position[i] =
             v4_from(bake->head->skin.position[i], bake->moving[i] ? 1.0f / model->mass_g : 0.0f);
-        model->moving_count += bake->moving[i];
     }
     return RIS_OK;
 }
@@ -187,6 +186,7 @@ ris_result ris__bake_springs(ris_bake *bake, ris_error *err)
     }
     if (result == RIS_OK) {
         weigh_umbrellas(bake);
+        result = ris__list_moving(model, err);
     }
     free(other);
     free(area);

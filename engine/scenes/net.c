@@ -75,7 +75,6 @@ static ris_result fill(ris_model *model, const ris_scene_net_def *def, ris_error
         model->bone_anchor[i] =
             v3_sub(def->position[i], v3(0, 0, def->anchor ? def->anchor[i].rest_mm : 0.0f));
         model->heft[i] = 1.0f;
-        model->moving_count += !pinned;
         if (def->anchor) {
             model->anchor_param[i] = def->anchor[i];
         }
@@ -106,7 +105,7 @@ static ris_result fill(ris_model *model, const ris_scene_net_def *def, ris_error
         .compression = tissue->compression,
         .damping_per_s = def->damping_per_s,
     };
-    return RIS_OK;
+    return ris__list_moving(model, err);
 }
 
 static ris_bake net_bake(ris_model *model)

@@ -173,9 +173,16 @@ ris_result ris_vk_buffer_read(ris_device *vk, ris_vk_buffer *buffer, VkDeviceSiz
 
 VkDeviceSize ris_vk_range(const ris_device *vk, VkDeviceSize *cursor, VkDeviceSize size)
 {
-    VkDeviceSize align = vk->properties.limits.minStorageBufferOffsetAlignment, start;
-    if (align < 64) {
-        align = 64; /* a cache line, and every other use's alignment */
+    const VkPhysicalDeviceLimits *limits = &vk->properties.limits;
+    VkDeviceSize align = 64, start; /* a cache line, and the alignment of copies */
+    if (align < limits->minStorageBufferOffsetAlignment) {
+        align = limits->minStorageBufferOffsetAlignment;
+    }
+    if (align < limits->minUniformBufferOffsetAlignment) {
+        align = limits->minUniformBufferOffsetAlignment;
+    }
+    if (align < limits->minTexelBufferOffsetAlignment) {
+        align = limits->minTexelBufferOffsetAlignment;
     }
     start = (*cursor + align - 1) / align * align;
     *cursor = start + size;

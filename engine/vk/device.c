@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define STORAGE_BUFFERS_NEEDED 22 /* RIS_BIND_COUNT: one set holds all buffers of the simulation */
+#define STORAGE_BUFFERS_NEEDED 21 /* of RIS_BIND_COUNT: one set holds all buffers of the simulation */
 
 static const char *type_name(VkPhysicalDeviceType type)
 {

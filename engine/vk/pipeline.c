@@ -86,6 +86,18 @@ void ris_vk_sets_write_buffer(ris_device *vk, const ris_vk_sets *sets, uint32_t 
     vkUpdateDescriptorSets(vk->handle, 1, &write, 0, NULL);
 }
 
+void ris_vk_sets_write_texels(ris_device *vk, const ris_vk_sets *sets, uint32_t set, uint32_t binding,
+                              VkBufferView view)
+{
+    VkWriteDescriptorSet write = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                  .dstSet = sets->set[set],
+                                  .dstBinding = binding,
+                                  .descriptorCount = 1,
+                                  .descriptorType = sets->type[binding],
+                                  .pTexelBufferView = &view};
+    vkUpdateDescriptorSets(vk->handle, 1, &write, 0, NULL);
+}
+
 void ris_vk_sets_write_image(ris_device *vk, const ris_vk_sets *sets, uint32_t set, uint32_t binding,
                              VkImageView view, VkImageLayout layout, VkSampler sampler)
 {
@@ -125,8 +137,9 @@ fail:
     return result;
 }
 
-ris_result ris_vk_compute_create(ris_device *vk, VkPipelineLayout layout, ris_vk_code code, const char *name,
-                                 VkPipeline *out, ris_error *err)
+ris_result ris_vk_compute_create(ris_device *vk, VkPipelineLayout layout, ris_vk_code code,
+                                 const VkSpecializationInfo *constants, const char *name, VkPipeline *out,
+                                 ris_error *err)
 {
     ris_result result = RIS_OK;
     VkShaderModule module = VK_NULL_HANDLE;
@@ -135,7 +148,8 @@ ris_result ris_vk_compute_create(ris_device *vk, VkPipelineLayout layout, ris_vk
         .layout = layout,
         .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
                   .stage = VK_SHADER_STAGE_COMPUTE_BIT,
-                  .pName = "main"}};
+                  .pName = "main",
+                  .pSpecializationInfo = constants}};
     *out = VK_NULL_HANDLE;
     RIS_TRY(create_module(vk, code, &module, err));
     info.stage.module = module;

@@ -217,6 +217,8 @@ ris_result ris_vk_sets_create(ris_device *vk, const VkDescriptorType *type, uint
                               VkShaderStageFlags stages, uint32_t set_count, ris_vk_sets *out,
                               ris_error *err);
 void ris_vk_sets_finish(ris_device *vk, ris_vk_sets *sets);
+void ris_vk_sets_write_texels(ris_device *vk, const ris_vk_sets *sets, uint32_t set, uint32_t binding,
+                              VkBufferView view);
 void ris_vk_sets_write_buffer(ris_device *vk, const ris_vk_sets *sets, uint32_t set, uint32_t binding,
                               VkBuffer buffer, VkDeviceSize offset, VkDeviceSize size);
 /* sampler may be VK_NULL_HANDLE for a storage image. */
@@ -234,8 +236,10 @@ typedef struct ris_vk_code {
 } ris_vk_code;
 #define RIS_VK_CODE(array) ((ris_vk_code){(array), sizeof(array)})
 
-ris_result ris_vk_compute_create(ris_device *vk, VkPipelineLayout layout, ris_vk_code code, const char *name,
-                                 VkPipeline *out, ris_error *err);
+/* constants: of the specialization, NULL = as the shader has them. */
+ris_result ris_vk_compute_create(ris_device *vk, VkPipelineLayout layout, ris_vk_code code,
+                                 const VkSpecializationInfo *constants, const char *name, VkPipeline *out,
+                                 ris_error *err);
 
 /* Viewport and scissor are dynamic. depth_format VK_FORMAT_UNDEFINED = no depth. */
 typedef struct ris_vk_graphics_def {

@@ -22,7 +22,7 @@
 
 #define RIS_GROUP_NODE 64
 
-/* Binding numbers in set 0 of every simulation stage; all are storage buffers. */
+/* Binding numbers in set 0 of every simulation stage: storage buffers, those of fixed size uniform buffers. */
 #define RIS_BIND_POSITION 0      /* ris_v4 (node_count): xyz mm, w inverse mass 1/g, 0 = static */
 #define RIS_BIND_REST 1          /* ris_v4 (node_count): xyz mm at rest, w as position */
 #define RIS_BIND_VELOCITY_HALF 2 /* ris_v4: v at t - dt/2, mm/s, w 0 */
@@ -38,14 +38,30 @@
 #define RIS_BIND_ANCHOR_POINT 12 /* ris_anchor_point (node_count), written once a frame */
 #define RIS_BIND_ANCHOR_DELTA 13 /* ris_v4 (node_count): change of the anchor since last frame, mm, w 0 */
 #define RIS_BIND_FREE 14         /* ris_v4 (node_count): position before contact, mm; written by verlet, read by contact */
-#define RIS_BIND_CONTACT_NODE 15  /* ris_contact_node (contact_node_count): the nodes that can touch anything */
+#define RIS_BIND_CONTACT_NODE 15  /* ris_contact_node (contact_node_count): lip_node_count with lips, then those with bodies */
 #define RIS_BIND_CONTACT_TOUCH 16 /* ris_contact_touch (contact_touch_count), sorted by contact node */
 #define RIS_BIND_CONTACT_OTHER 17 /* ris_uint (contact_pair_count): nodes of the other lip, sorted by contact node */
 #define RIS_BIND_CONTACT_GRID 18  /* ris_v4 (contact_sample_count): xyz unit, away from the body; w distance, mm, negative inside */
 #define RIS_BIND_CONTACT_BODY 19  /* ris_contact_body (RIS_CONTACT_BODIES), written once a frame */
 #define RIS_BIND_INERTIA 20       /* ris_inertia (1), written once a frame */
 #define RIS_BIND_HEFT 21          /* ris_float (node_count): what the tissue at the node weighs over 25 mm^2 x 10 mm of it */
-#define RIS_BIND_COUNT 22
+#define RIS_BIND_MOVING 22        /* ris_uint (moving_count): the nodes that move; the others stay as they were written */
+#define RIS_BIND_COUNT 23
+
+/* Texel buffers over some of these arrays, of vec4 or of words, for gathers: lavapipe reads a storage buffer lane by lane. */
+#define RIS_TEXEL_POSITION 23
+#define RIS_TEXEL_REST 24
+#define RIS_TEXEL_BEND 25
+#define RIS_TEXEL_NORMAL 26
+#define RIS_TEXEL_FREE 27
+#define RIS_TEXEL_CONTACT_GRID 28
+#define RIS_TEXEL_HALF_SPRING 29 /* words: shaders/lib/half_spring.glsl */
+#define RIS_TEXEL_END 30
+
+/* Specialization constants, booleans. */
+#define RIS_CONSTANT_KAEHLER 0    /* spring_force: anchor pair instead of normal + tangential anchor */
+#define RIS_CONSTANT_CONTINUOUS 1 /* spring_force: continuous biphasic law */
+#define RIS_CONSTANT_LIPS 2       /* contact: keep off the other lip; false: off bodies */
 
 /* One spring seen from one of its nodes. Each spring appears twice. */
 RIS_STRUCT(ris_half_spring) {
@@ -80,7 +96,7 @@ RIS_STRUCT(ris_anchor_point) {
 
 #define RIS_CONTACT_BODIES 6 /* at most: two eyes, skull, mandible, two rows of teeth */
 
-/* A node that can touch the other lip or a body. */
+/* A node that can touch the other lip, or bodies; one that can do both stands in the list twice. */
 RIS_STRUCT(ris_contact_node) {
     ris_uint node;
     ris_uint lip_first; /* of its nodes of the other lip, up to lip_end */
@@ -130,8 +146,9 @@ RIS_STRUCT(ris_sim_push) {
     ris_float compression;   /* factor on modulus_low when l < r */
     ris_float damping_per_s; /* gamma / m, 1/s */
     ris_uint contact_node_count;
-    ris_uint lip_node_count; /* the first of the contact nodes: those with a list of the other lip */
+    ris_uint lip_node_count; /* the first of the contact nodes, those with lips */
     ris_float lip_radius_mm; /* lips feel each other this far */
+    ris_uint moving_count;
 } RIS_STRUCT_END(ris_sim_push);
 
 #ifdef RIS_GLSL

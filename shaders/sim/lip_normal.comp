@@ -4,7 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "stage.glsl"
 
-layout(set = 0, binding = RIS_BIND_FREE, scalar) readonly buffer free_block { vec4 free_position[]; };
+layout(set = 0, binding = RIS_TEXEL_FREE) uniform samplerBuffer free_position;
 layout(set = 0, binding = RIS_BIND_NORMAL, scalar) writeonly buffer normal_block { vec4 normal[]; };
 layout(set = 0, binding = RIS_BIND_RING_START, scalar) readonly buffer ring_start_block { uint ring_start[]; };
 layout(set = 0, binding = RIS_BIND_RING, scalar) readonly buffer ring_block { ris_ring ring[]; };
@@ -16,16 +16,19 @@ void main()
         return;
     }
     const uint i = contact_node[gl_GlobalInvocationID.x].node;
-    const vec3 p = free_position[i].xyz;
+    const vec3 p = texelFetch(free_position, int(i)).xyz;
     precise vec3 s = vec3(0.0);
+    uint k = ring_start[i];
     const uint end = ring_start[i + 1];
-    for (uint k = ring_start[i]; k < end; k++) {
-        const ris_ring t = ring[k];
-        precise vec3 u = free_position[t.b].xyz - p;
-        precise vec3 v = free_position[t.c].xyz - p;
-        s.x = s.x + (u.y * v.z - u.z * v.y);
-        s.y = s.y + (u.z * v.x - u.x * v.z);
-        s.z = s.z + (u.x * v.y - u.y * v.x);
+    if (k < end) {
+        do {
+            const ris_ring t = ring[k];
+            precise vec3 u = texelFetch(free_position, int(t.b)).xyz - p;
+            precise vec3 v = texelFetch(free_position, int(t.c)).xyz - p;
+            s.x = s.x + (u.y * v.z - u.z * v.y);
+            s.y = s.y + (u.z * v.x - u.x * v.z);
+            s.z = s.z + (u.x * v.y - u.y * v.x);
+        } while (++k < end);
     }
     precise float l = sqrt((s.x * s.x + s.y * s.y) + s.z * s.z);
     if (l > 0.0) {

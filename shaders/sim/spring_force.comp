@@ -3,14 +3,19 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "stage.glsl"
+#include "half_spring.glsl"
 
-layout(set = 0, binding = RIS_BIND_POSITION, scalar) readonly buffer position_block { vec4 position[]; };
+layout(set = 0, binding = RIS_BIND_MOVING, scalar) readonly buffer moving_block { uint moving[]; };
+layout(set = 0, binding = RIS_TEXEL_POSITION) uniform samplerBuffer position;
 layout(set = 0, binding = RIS_BIND_FORCE, scalar) writeonly buffer force_block { vec4 force[]; };
-layout(set = 0, binding = RIS_BIND_BEND, scalar) readonly buffer bend_block { vec4 bend[]; };
+layout(set = 0, binding = RIS_TEXEL_BEND) uniform samplerBuffer bend;
 layout(set = 0, binding = RIS_BIND_SPRING_START, scalar) readonly buffer spring_start_block { uint spring_start[]; };
-layout(set = 0, binding = RIS_BIND_HALF_SPRING, scalar) readonly buffer half_spring_block { ris_half_spring half_spring[]; };
 layout(set = 0, binding = RIS_BIND_ANCHOR_PARAM, scalar) readonly buffer anchor_param_block { ris_anchor_param anchor_param[]; };
 layout(set = 0, binding = RIS_BIND_ANCHOR_POINT, scalar) readonly buffer anchor_point_block { ris_anchor_point anchor_point[]; };
+
+// The tissue of the model, fixed when the pipeline is made: wide devices without branches would compute both.
+layout(constant_id = RIS_CONSTANT_KAEHLER) const bool KAEHLER = false;
+layout(constant_id = RIS_CONSTANT_CONTINUOUS) const bool CONTINUOUS = true;
 
 const float TINY = 1e-6; // shorter than this part of its rest length, a spring has no direction
 
@@ -26,7 +31,7 @@ float tension(float l, float r)
     precise float t;
     if (l < r) {
         t = (push.compression * push.modulus_low) * (l - r);
-    } else if ((push.flags & RIS_TISSUE_FLAG_CONTINUOUS) != 0u) {
+    } else if (CONTINUOUS) {
         precise float s = push.switch_stretch * r;
         t = push.modulus_low * (min(l, s) - r) + push.modulus_high * max(l - s, 0.0);
     } else {
@@ -52,19 +57,19 @@ vec3 pair_force(vec3 x, vec3 a, float k, float r)
 
 void main()
 {
-    const uint i = gl_GlobalInvocationID.x;
-    if (i >= push.node_count) {
+    if (gl_GlobalInvocationID.x >= push.moving_count) {
         return;
     }
-    const vec4 p = position[i];
+    const uint i = moving[gl_GlobalInvocationID.x];
+    const vec3 x = texelFetch(position, int(i)).xyz;
     precise vec3 f = vec3(0.0);
-    if (p.w > 0.0) {
-        const bool kaehler = (push.flags & RIS_TISSUE_FLAG_KAEHLER) != 0u;
-        precise vec3 g = vec3(0.0);
-        const uint end = spring_start[i + 1];
-        for (uint h = spring_start[i]; h < end; h++) {
-            const ris_half_spring s = half_spring[h];
-            precise vec3 d = position[s.other].xyz - p.xyz;
+    precise vec3 g = vec3(0.0);
+    uint h = spring_start[i];
+    const uint end = spring_start[i + 1];
+    if (h < end) {
+        do {
+            const ris_half_spring s = half_spring(h);
+            precise vec3 d = texelFetch(position, int(s.other)).xyz - x;
             precise float l = sqrt(dot3(d, d));
             precise float q = 0.0;
             precise float shortest = TINY * s.rest_mm;
@@ -72,22 +77,22 @@ void main()
                 q = (s.area_ratio * tension(l, s.rest_mm)) / l;
             }
             f = f + q * d;
-            if (!kaehler) {
-                g = g + s.bend_in * bend[s.other].xyz;
+            if (!KAEHLER) {
+                g = g + s.bend_in * texelFetch(bend, int(s.other)).xyz;
             }
-        }
-        const ris_anchor_param a = anchor_param[i];
-        const ris_anchor_point at = anchor_point[i];
-        if (kaehler) {
-            f = f + pair_force(p.xyz, at.a.xyz, a.normal, a.rest_mm);
-            f = f + pair_force(p.xyz, at.b.xyz, a.normal, a.rest_mm);
-        } else {
-            f = f + (a.bend * bend[i].xyz - g);
-            precise vec3 d = p.xyz - at.a.xyz;
-            precise float c = dot3(at.b.xyz, d);
-            precise vec3 m = c * at.b.xyz;
-            f = f - (a.normal * m + a.tangential * (d - m));
-        }
+        } while (++h < end);
+    }
+    const ris_anchor_param a = anchor_param[i];
+    const ris_anchor_point at = anchor_point[i];
+    if (KAEHLER) {
+        f = f + pair_force(x, at.a.xyz, a.normal, a.rest_mm);
+        f = f + pair_force(x, at.b.xyz, a.normal, a.rest_mm);
+    } else {
+        f = f + (a.bend * texelFetch(bend, int(i)).xyz - g);
+        precise vec3 d = x - at.a.xyz;
+        precise float c = dot3(at.b.xyz, d);
+        precise vec3 m = c * at.b.xyz;
+        f = f - (a.normal * m + a.tangential * (d - m));
     }
     force[i] = vec4(f, 0.0);
 }

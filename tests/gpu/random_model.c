@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "asset/channel.h"
+#include "model/model_impl.h"
 
 #define DEGREE_MAX 9u
 
@@ -45,7 +46,6 @@ static void fill_nodes(ris_model *model, uint32_t *seed)
         ris_vec4 n = random_vec(seed, 1.0f, 0.0f);
         const float l = length_between(n, (ris_vec4){0});
         const bool is_static = model->node_count > 1 && random_unit(seed) < 0.15f;
-        model->moving_count += !is_static;
         model->rest_position[i] =
             random_vec(seed, 40.0f, is_static ? 0.0f : random_between(seed, 2.0f, 6.0f));
         model->rest_normal[i] = (ris_vec4){n.x / l, n.y / l, n.z / l, 0.0f};
@@ -89,10 +89,50 @@ static void fill_springs(ris_model *model, uint32_t *seed)
     model->triangle_count = (t + 2) / 3; /* the ring has room for three times as many */
 }
 
+/* Nodes with random ones of the other lip. */
+static void fill_lips(ris_model *model, uint32_t *seed)
+{
+    const uint32_t n = model->node_count;
+    for (uint32_t i = 0; i < n; i++) {
+        ris_contact_node c = {.node = i, .lip_first = model->contact_pair_count};
+        c.lip_limit_mm = random_between(seed, -2.0f, 2.0f);
+        if (!(model->rest_position[i].w > 0.0f) || random_unit(seed) < 0.3f) {
+            continue;
+        }
+        for (uint32_t k = random_word(seed) % (DEGREE_MAX + 1); n > 1 && k > 0; k--) {
+            model->contact_other[model->contact_pair_count++] = (i + 1 + random_word(seed) % (n - 1)) % n;
+        }
+        c.lip_end = model->contact_pair_count;
+        if (c.lip_end > c.lip_first) {
+            model->contact_node[model->contact_node_count++] = c;
+        }
+    }
+    model->push.lip_node_count = model->contact_node_count;
+}
+
+/* Nodes with random bodies, some of them at the middle of an edge. */
+static void fill_touches(ris_model *model, uint32_t *seed)
+{
+    const uint32_t n = model->node_count;
+    for (uint32_t i = 0; i < n; i++) {
+        ris_contact_node c = {.node = i, .touch_first = model->contact_touch_count};
+        for (uint32_t k = 0; k < 3 && model->rest_position[i].w > 0.0f; k++) {
+            if (random_unit(seed) < 0.7f) {
+                const uint32_t other = random_unit(seed) < 0.5f ? i : random_word(seed) % n;
+                model->contact_touch[model->contact_touch_count++] =
+                    (ris_contact_touch){k, other, random_between(seed, -2.0f, 2.0f)};
+            }
+        }
+        c.touch_end = model->contact_touch_count;
+        if (c.touch_end > c.touch_first) {
+            model->contact_node[model->contact_node_count++] = c;
+        }
+    }
+}
+
 /* Some nodes feel others as the other lip, all feel some of three bodies. Nothing in the kaehler tissue. */
 static void fill_contact(ris_model *model, uint32_t *seed)
 {
-    const uint32_t n = model->node_count;
     if (model->push.flags & RIS_TISSUE_FLAG_KAEHLER) {
         return;
     }
@@ -112,28 +152,9 @@ static void fill_contact(ris_model *model, uint32_t *seed)
     for (uint32_t s = 0; s < model->contact_sample_count; s++) {
         model->contact_grid[s] = random_vec(seed, 1.0f, random_between(seed, -3.0f, 9.0f));
     }
-    for (uint32_t i = 0; i < n; i++) {
-        ris_contact_node c = {
-            .node = i, .lip_first = model->contact_pair_count, .touch_first = model->contact_touch_count};
-        c.lip_limit_mm = random_between(seed, -2.0f, 2.0f);
-        for (uint32_t k = random_word(seed) % (DEGREE_MAX + 1); n > 1 && k > 0; k--) {
-            model->contact_other[model->contact_pair_count++] = (i + 1 + random_word(seed) % (n - 1)) % n;
-        }
-        for (uint32_t k = 0; k < 3; k++) {
-            if (random_unit(seed) < 0.7f) {
-                const uint32_t other = random_unit(seed) < 0.5f ? i : random_word(seed) % n;
-                model->contact_touch[model->contact_touch_count++] =
-                    (ris_contact_touch){k, other, random_between(seed, -2.0f, 2.0f)};
-            }
-        }
-        c.lip_end = model->contact_pair_count;
-        c.touch_end = model->contact_touch_count;
-        if (model->rest_position[i].w > 0.0f && (c.lip_end > c.lip_first || c.touch_end > c.touch_first)) {
-            model->contact_node[model->contact_node_count++] = c;
-        }
-    }
+    fill_lips(model, seed);
+    fill_touches(model, seed);
     model->push.contact_node_count = model->contact_node_count;
-    model->push.lip_node_count = (2 * model->contact_node_count + 2) / 3;
 }
 
 static bool allocate(ris_model *model)
@@ -154,7 +175,7 @@ static bool allocate(ris_model *model)
     model->jaw_weight = calloc(n, sizeof *model->jaw_weight);
     model->fiber_point = calloc(1, sizeof *model->fiber_point);
     model->contact_grid = calloc(4096, sizeof *model->contact_grid);
-    model->contact_node = calloc(n, sizeof *model->contact_node);
+    model->contact_node = calloc(2 * n, sizeof *model->contact_node);
     model->contact_touch = calloc(3 * n, sizeof *model->contact_touch);
     model->contact_other = calloc(n * DEGREE_MAX + 1, sizeof *model->contact_other);
     model->channel_count = ris__beside_channel_count;
@@ -191,8 +212,12 @@ ris_model *random_model_create(uint32_t node_count, uint32_t flags, uint32_t see
     fill_springs(model, &seed);
     model->mass_g = 0.25f;
     model->push =
-        (ris_sim_push){node_count, flags, 1.0f / 480.0f, 100.0f, 1000.0f, 1.5f, 0.3f, 12.0f, 0, 0, 0.0f};
+        (ris_sim_push){node_count, flags, 1.0f / 480.0f, 100.0f, 1000.0f, 1.5f, 0.3f, 12.0f, 0, 0, 0.0f, 0};
     fill_contact(model, &seed);
+    if (ris__list_moving(model, NULL) != RIS_OK) {
+        random_model_free(model);
+        return NULL;
+    }
     model->stable_dt_s = 0.01f;
     return model;
 }
@@ -204,6 +229,7 @@ void random_model_free(ris_model *model)
     }
     free((void *)model->head);
     free(model->rest_position);
+    free(model->moving);
     free(model->spring_start);
     free(model->half_spring);
     free(model->ring_start);

@@ -18,6 +18,7 @@ enum {
     OP_MEMBER_NAME = 6,
     OP_EXECUTION_MODE_ID = 331,
     OP_CONSTANT = 43,
+    OP_TYPE_ARRAY = 28,
     OP_TYPE_RUNTIME_ARRAY = 29,
     OP_TYPE_STRUCT = 30,
     OP_TYPE_POINTER = 32,
@@ -38,7 +39,13 @@ enum {
     DECORATION_OFFSET = 35,
     DECORATION_NO_CONTRACTION = 42
 };
-enum { MODE_LOCAL_SIZE_ID = 38, STORAGE_PUSH_CONSTANT = 9, STORAGE_BUFFER = 12 };
+enum {
+    MODE_LOCAL_SIZE_ID = 38,
+    STORAGE_PUSH_CONSTANT = 9,
+    STORAGE_BUFFER = 12,
+    STORAGE_UNIFORM = 2,
+    STORAGE_TEXELS = 0
+};
 
 #define MEMBERS 16u
 #define NONE UINT32_MAX
@@ -77,6 +84,7 @@ static const field fields[] = {
     FIELD(ris_sim_push, contact_node_count),
     FIELD(ris_sim_push, lip_node_count),
     FIELD(ris_sim_push, lip_radius_mm),
+    FIELD(ris_sim_push, moving_count),
     FIELD(ris_contact_node, node),
     FIELD(ris_contact_node, lip_first),
     FIELD(ris_contact_node, lip_end),
@@ -127,25 +135,42 @@ static const block blocks[] = {
     {"contact_body_block", RIS_BIND_CONTACT_BODY, sizeof(ris_contact_body)},
     {"inertia_block", RIS_BIND_INERTIA, sizeof(ris_inertia)},
     {"heft_block", RIS_BIND_HEFT, sizeof(float)},
+    {"moving_block", RIS_BIND_MOVING, sizeof(uint32_t)},
 };
 #define BLOCK_COUNT (sizeof blocks / sizeof blocks[0])
 
+static const struct {
+    const char *name;
+    uint32_t binding;
+} texels[] = {
+    {"position", RIS_TEXEL_POSITION},
+    {"rest", RIS_TEXEL_REST},
+    {"bend", RIS_TEXEL_BEND},
+    {"normal", RIS_TEXEL_NORMAL},
+    {"free_position", RIS_TEXEL_FREE},
+    {"contact_grid", RIS_TEXEL_CONTACT_GRID},
+    {"half_spring_word", RIS_TEXEL_HALF_SPRING},
+};
+#define TEXEL_COUNT (sizeof texels / sizeof texels[0])
+
 #define BIT(name) (1u << RIS_BIND_##name)
+#define TEXEL(name) (1u << RIS_TEXEL_##name)
 static const struct {
     const char *name;
     uint32_t bindings; /* all it declares */
 } stages[] = {
-    {"anchor_shift", BIT(POSITION) | BIT(ANCHOR_DELTA)},
-    {"bend", BIT(POSITION) | BIT(REST) | BIT(BEND) | BIT(SPRING_START) | BIT(HALF_SPRING)},
-    {"spring_force", BIT(POSITION) | BIT(FORCE) | BIT(BEND) | BIT(SPRING_START) | BIT(HALF_SPRING) |
-                         BIT(ANCHOR_PARAM) | BIT(ANCHOR_POINT)},
-    {"verlet", BIT(POSITION) | BIT(VELOCITY_HALF) | BIT(VELOCITY_PREV) | BIT(FORCE) | BIT(FREE) |
-                   BIT(INERTIA) | BIT(HEFT)},
-    {"lip_normal", BIT(FREE) | BIT(NORMAL) | BIT(RING_START) | BIT(RING) | BIT(CONTACT_NODE)},
-    {"contact", BIT(POSITION) | BIT(VELOCITY_HALF) | BIT(VELOCITY_PREV) | BIT(NORMAL) | BIT(FREE) |
-                    BIT(CONTACT_NODE) | BIT(CONTACT_TOUCH) | BIT(CONTACT_OTHER) | BIT(CONTACT_GRID) |
+    {"anchor_shift", BIT(MOVING) | BIT(POSITION) | BIT(ANCHOR_DELTA)},
+    {"bend",
+     BIT(MOVING) | TEXEL(POSITION) | TEXEL(REST) | BIT(BEND) | BIT(SPRING_START) | TEXEL(HALF_SPRING)},
+    {"spring_force", BIT(MOVING) | TEXEL(POSITION) | BIT(FORCE) | TEXEL(BEND) | BIT(SPRING_START) |
+                         TEXEL(HALF_SPRING) | BIT(ANCHOR_PARAM) | BIT(ANCHOR_POINT)},
+    {"verlet", BIT(MOVING) | BIT(POSITION) | BIT(VELOCITY_HALF) | BIT(VELOCITY_PREV) | BIT(FORCE) |
+                   BIT(FREE) | BIT(INERTIA) | BIT(HEFT)},
+    {"lip_normal", TEXEL(FREE) | BIT(NORMAL) | BIT(RING_START) | BIT(RING) | BIT(CONTACT_NODE)},
+    {"contact", BIT(POSITION) | BIT(VELOCITY_HALF) | BIT(VELOCITY_PREV) | TEXEL(NORMAL) | TEXEL(FREE) |
+                    BIT(CONTACT_NODE) | BIT(CONTACT_TOUCH) | BIT(CONTACT_OTHER) | TEXEL(CONTACT_GRID) |
                     BIT(CONTACT_BODY)},
-    {"normal", BIT(POSITION) | BIT(NORMAL) | BIT(RING_START) | BIT(RING)},
+    {"normal", TEXEL(POSITION) | BIT(NORMAL) | BIT(RING_START) | BIT(RING)},
 };
 #define STAGE_COUNT (sizeof stages / sizeof stages[0])
 
@@ -205,6 +230,12 @@ static void index_decoration(module *m, uint32_t at)
     }
 }
 
+static bool is_float_arithmetic(uint32_t op)
+{
+    return op == OP_FADD || op == OP_FSUB || op == OP_FMUL || op == OP_FDIV ||
+           (op >= OP_VECTOR_TIMES_SCALAR && op <= OP_DOT);
+}
+
 static void index_instruction(module *m, uint32_t at)
 {
     const uint32_t op = m->words[at] & 0xffff, *w = &m->words[at];
@@ -231,6 +262,7 @@ static void index_instruction(module *m, uint32_t at)
         m->entry[w[2]].at = at;
         break;
     case OP_TYPE_RUNTIME_ARRAY:
+    case OP_TYPE_ARRAY:
     case OP_TYPE_STRUCT:
     case OP_TYPE_POINTER:
         m->entry[w[1]].opcode = op;
@@ -240,7 +272,11 @@ static void index_instruction(module *m, uint32_t at)
         m->entry[w[2]].opcode = op;
         m->entry[w[2]].at = at;
         break;
-    default: break;
+    default:
+        if (is_float_arithmetic(op)) {
+            m->entry[w[2]].opcode = op;
+        }
+        break;
     }
 }
 
@@ -291,7 +327,7 @@ static bool check_block(module *m, uint32_t variable, uint32_t struct_id, uint32
     while (b < BLOCK_COUNT && strcmp(blocks[b].name, s->name) != 0) {
         b++;
     }
-    if (b == BLOCK_COUNT || array->opcode != OP_TYPE_RUNTIME_ARRAY) {
+    if (b == BLOCK_COUNT || (array->opcode != OP_TYPE_RUNTIME_ARRAY && array->opcode != OP_TYPE_ARRAY)) {
         return refuse(m, "known block", s->name, 0, 1);
     }
     if (!v->binding_at || m->words[v->binding_at] != blocks[b].binding) {
@@ -313,7 +349,28 @@ static bool check_block(module *m, uint32_t variable, uint32_t struct_id, uint32
     return element->opcode == OP_TYPE_STRUCT ? check_struct(m, m->words[array->at + 2]) : true;
 }
 
-/* Buffers and push constants of the module. */
+static bool check_texels(module *m, uint32_t variable, uint32_t *seen)
+{
+    const entry *v = &m->entry[variable];
+    size_t t = 0;
+    while (t < TEXEL_COUNT && strcmp(texels[t].name, v->name) != 0) {
+        t++;
+    }
+    if (t == TEXEL_COUNT) {
+        return refuse(m, "known texel buffer", v->name, 0, 1);
+    }
+    if (!v->binding_at || m->words[v->binding_at] != texels[t].binding) {
+        return refuse(m, "binding", v->name, v->binding_at ? m->words[v->binding_at] : NONE,
+                      texels[t].binding);
+    }
+    if (!v->set_at || m->words[v->set_at] != 0) {
+        return refuse(m, "set", v->name, v->set_at ? m->words[v->set_at] : NONE, 0);
+    }
+    *seen |= 1u << texels[t].binding;
+    return true;
+}
+
+/* Buffers, texel buffers and push constants of the module. */
 static bool check_variables(module *m, uint32_t expected)
 {
     uint32_t seen = 0, pushes = 0;
@@ -325,7 +382,11 @@ static bool check_variables(module *m, uint32_t expected)
         }
         storage = m->words[v->at + 3];
         struct_id = m->words[m->entry[m->words[v->at + 1]].at + 3];
-        if (storage == STORAGE_BUFFER && !check_block(m, id, struct_id, &seen)) {
+        if ((storage == STORAGE_BUFFER || storage == STORAGE_UNIFORM) &&
+            !check_block(m, id, struct_id, &seen)) {
+            return false;
+        }
+        if (storage == STORAGE_TEXELS && !check_texels(m, id, &seen)) {
             return false;
         }
         if (storage == STORAGE_PUSH_CONSTANT) {
@@ -343,12 +404,6 @@ static bool check_variables(module *m, uint32_t expected)
         return refuse(m, "number", "push constant blocks", pushes, 1);
     }
     return seen == expected ? true : refuse(m, "set of bindings", "the stage", seen, expected);
-}
-
-static bool is_float_arithmetic(uint32_t op)
-{
-    return op == OP_FADD || op == OP_FSUB || op == OP_FMUL || op == OP_FDIV ||
-           (op >= OP_VECTOR_TIMES_SCALAR && op <= OP_DOT);
 }
 
 static bool check_contraction(module *m)
@@ -421,7 +476,8 @@ static void every_spoiled_word_is_found(void **state)
                 spoil(&m, stages[s].bindings, at + 3, m.words[at + 3] + 4, "stride");
                 spoiled++;
             }
-            if (op == OP_DECORATE && decoration == DECORATION_NO_CONTRACTION) {
+            if (op == OP_DECORATE && decoration == DECORATION_NO_CONTRACTION &&
+                is_float_arithmetic(m.entry[m.words[at + 1]].opcode)) { /* glslang marks indices, too */
                 spoil(&m, stages[s].bindings, at + 2, 0, "precise");
                 spoiled++;
             }

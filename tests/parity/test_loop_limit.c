@@ -39,8 +39,8 @@ static loops run(uint32_t first, uint32_t second)
     assert_int_equal(ris_vk_sets_create(vk, &type, 1, VK_SHADER_STAGE_COMPUTE_BIT, 1, &sets, &err), RIS_OK);
     ris_vk_sets_write_buffer(vk, &sets, 0, 0, buffer.handle, 0, sizeof value);
     assert_int_equal(ris_vk_layout_create(vk, sets.layout, 0, 0, &layout, &err), RIS_OK);
-    assert_int_equal(ris_vk_compute_create(vk, layout, RIS_VK_CODE(ris_spv_loop_limit_comp), "loop_limit",
-                                           &pipeline, &err),
+    assert_int_equal(ris_vk_compute_create(vk, layout, RIS_VK_CODE(ris_spv_loop_limit_comp), NULL,
+                                           "loop_limit", &pipeline, &err),
                      RIS_OK);
     assert_int_equal(ris_vk_cmd_create(vk, "loop_limit", &cmd, &err), RIS_OK);
     assert_int_equal(ris_vk_cmd_begin(vk, &cmd, true, &err), RIS_OK);

@@ -155,6 +155,7 @@ typedef struct ris_model {
 
     /* baked for the stages (layout of sim_shared.h) */
     ris_vec4 *rest_position;        /* mm, w inverse mass (node_count) */
+    uint32_t *moving;               /* nodes that move, in the order the stages take them (moving_count) */
     uint32_t *spring_start;         /* (node_count + 1) */
     ris_half_spring *half_spring;   /* (half_spring_count) */
     uint32_t *ring_start;           /* (node_count + 1) */
@@ -206,7 +207,7 @@ typedef struct ris_model {
         contact_pair_count;
     ris_contact_solid contact_solid[RIS_CONTACT_BODIES];
     ris_vec4 *contact_grid;         /* xyz unit, away from the body; w distance, mm (contact_sample_count) */
-    ris_contact_node *contact_node; /* nodes with the same bodies stand together (contact_node_count) */
+    ris_contact_node *contact_node; /* those with pairs first, then those with touches (contact_node_count) */
     ris_contact_touch *contact_touch; /* (contact_touch_count) */
     uint32_t *contact_other;          /* nodes of the other lip (contact_pair_count) */
     ris_vec3 *bone_anchor;            /* KA-14: point on the bone below the node at rest, mm (node_count) */

@@ -4,13 +4,12 @@
 
 void ris__cpu_anchor_shift(ris_cpu_state *state)
 {
-    for (uint32_t i = 0; i < state->model->node_count; ++i) {
+    for (uint32_t m = 0; m < state->model->moving_count; ++m) {
+        const uint32_t i = state->model->moving[m];
         ris_vec4 *x = &state->position[i];
-        if (x->w > 0.0f) {
-            const ris_vec4 *delta = &state->anchor_delta[i];
-            x->x = x->x + delta->x;
-            x->y = x->y + delta->y;
-            x->z = x->z + delta->z;
-        }
+        const ris_vec4 *delta = &state->anchor_delta[i];
+        x->x = x->x + delta->x;
+        x->y = x->y + delta->y;
+        x->z = x->z + delta->z;
     }
 }

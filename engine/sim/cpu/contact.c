@@ -1,5 +1,6 @@
-/* contact (beyond the thesis; KF-04): nodes stay off the other lip and out of bone, teeth and eyes. Every node from the
- * positions before contact, so the order of nodes means nothing; both ends of an edge give way for its middle. Order: docs/physics.md. */
+/* contact (beyond the thesis; KF-04): nodes stay off the other lip, then out of bone, teeth and eyes. All but a node's own
+ * place is read from before contact, so the order of nodes means nothing; both ends of an edge give way for its middle. A
+ * node that does both stands in the list twice. Order: docs/physics.md. */
 #include "sim/cpu/cpu_stage.h"
 
 #include "model/distance_grid.h"
@@ -85,7 +86,8 @@ void ris__cpu_contact(ris_cpu_state *state)
     for (uint32_t c = 0; c < model->contact_node_count; ++c) {
         const ris_contact_node *contact = &model->contact_node[c];
         const uint32_t i = contact->node;
-        touch t = {v4_xyz(state->free[i]), v4_xyz(state->velocity_half[i]), v4_xyz(state->velocity_prev[i])};
+        touch t = {v4_xyz(state->position[i]), v4_xyz(state->velocity_half[i]),
+                   v4_xyz(state->velocity_prev[i])};
         touch_lip(state, contact, &t);
         for (uint32_t k = contact->touch_first; k < contact->touch_end; ++k) {
             const ris_contact_touch *with = &model->contact_touch[k];

@@ -47,12 +47,9 @@ void ris__cpu_spring_force(ris_cpu_state *state)
     const ris_model *model = state->model;
     const ris_sim_push push = model->push;
     const bool kaehler = (push.flags & RIS_TISSUE_FLAG_KAEHLER) != 0;
-    for (uint32_t i = 0; i < model->node_count; ++i) {
+    for (uint32_t m = 0; m < model->moving_count; ++m) {
+        const uint32_t i = model->moving[m];
         ris_vec3 f = {0}, g = {0};
-        if (!(state->position[i].w > 0.0f)) {
-            state->force[i] = v4_from(f, 0.0f);
-            continue;
-        }
         const ris_vec3 x = v4_xyz(state->position[i]);
         for (uint32_t h = model->spring_start[i]; h < model->spring_start[i + 1]; ++h) {
             const ris_half_spring *half = &model->half_spring[h];

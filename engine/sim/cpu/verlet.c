@@ -23,16 +23,15 @@ void ris__cpu_verlet(ris_cpu_state *state)
 {
     const ris_sim_push push = state->model->push;
     const ris_inertia head = state->inertia;
-    for (uint32_t i = 0; i < state->model->node_count; ++i) {
+    for (uint32_t m = 0; m < state->model->moving_count; ++m) {
+        const uint32_t i = state->model->moving[m];
         ris_vec4 *x = &state->position[i], *half = &state->velocity_half[i], *prev = &state->velocity_prev[i];
         const ris_vec4 *f = &state->force[i];
         const float w = x->w, heft = state->model->heft[i];
-        if (w > 0.0f) {
-            const ris_vec4 at = *x;
-            integrate(&x->x, &half->x, &prev->x, f->x, w, heft * felt(head.row_x, at), &push);
-            integrate(&x->y, &half->y, &prev->y, f->y, w, heft * felt(head.row_y, at), &push);
-            integrate(&x->z, &half->z, &prev->z, f->z, w, heft * felt(head.row_z, at), &push);
-            state->free[i] = *x;
-        }
+        const ris_vec4 at = *x;
+        integrate(&x->x, &half->x, &prev->x, f->x, w, heft * felt(head.row_x, at), &push);
+        integrate(&x->y, &half->y, &prev->y, f->y, w, heft * felt(head.row_y, at), &push);
+        integrate(&x->z, &half->z, &prev->z, f->z, w, heft * felt(head.row_z, at), &push);
+        state->free[i] = *x;
     }
 }

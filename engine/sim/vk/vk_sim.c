@@ -28,9 +28,9 @@ typedef struct vk_sim {
     const ris_model *model;
     vk_state mem;
     VkPipelineLayout layout;
-    VkPipeline pipeline[RIS_STAGE_COUNT];
-    ris_vk_cmd frame, single;   /* a whole tick; one stage or one copy */
-    uint32_t recorded_substeps; /* of frame, 0 = none */
+    VkPipeline pipeline[RIS_STAGE_COUNT], contact_bodies; /* the second pass of contact */
+    ris_vk_cmd frame, single;                             /* a whole tick; one stage or one copy */
+    uint32_t recorded_substeps;                           /* of frame, 0 = none */
     bool timestamps, recorded_timestamps;
     ris_vk_query query;   /* one per dispatch and one before all */
     uint8_t *query_stage; /* stage that ends at each query (query.count) */
@@ -41,7 +41,7 @@ typedef struct vk_sim {
 static const VkPipelineStageFlags2 compute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
 static const VkPipelineStageFlags2 everything = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
 static const VkAccessFlags2 shader_access =
-    VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
+    VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_UNIFORM_READ_BIT;
 static const VkAccessFlags2 any_access = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
 
 static void vk_destroy(void *self)
@@ -56,6 +56,7 @@ static void vk_destroy(void *self)
     for (uint32_t s = 0; s < RIS_STAGE_COUNT; s++) {
         vkDestroyPipeline(sim->vk->handle, sim->pipeline[s], NULL);
     }
+    vkDestroyPipeline(sim->vk->handle, sim->contact_bodies, NULL);
     vkDestroyPipelineLayout(sim->vk->handle, sim->layout, NULL);
     ris__vk_state_finish(sim->vk, &sim->mem);
     free(sim->query_stage);
@@ -65,10 +66,7 @@ static void vk_destroy(void *self)
 
 static ris_result create_pipelines(vk_sim *sim, ris_error *err)
 {
-    static const struct {
-        const uint32_t *words;
-        size_t size;
-    } code[RIS_STAGE_COUNT] = {
+    static const ris_vk_code code[RIS_STAGE_COUNT] = {
         [RIS_STAGE_ANCHOR_SHIFT] = {ris_spv_anchor_shift_comp, sizeof ris_spv_anchor_shift_comp},
         [RIS_STAGE_BEND] = {ris_spv_bend_comp, sizeof ris_spv_bend_comp},
         [RIS_STAGE_SPRING_FORCE] = {ris_spv_spring_force_comp, sizeof ris_spv_spring_force_comp},
@@ -77,13 +75,28 @@ static ris_result create_pipelines(vk_sim *sim, ris_error *err)
         [RIS_STAGE_CONTACT] = {ris_spv_contact_comp, sizeof ris_spv_contact_comp},
         [RIS_STAGE_NORMAL] = {ris_spv_normal_comp, sizeof ris_spv_normal_comp},
     };
+    const uint32_t flags = sim->model->push.flags;
+    VkBool32 value[] = {[RIS_CONSTANT_KAEHLER] = (flags & RIS_TISSUE_FLAG_KAEHLER) != 0,
+                        [RIS_CONSTANT_CONTINUOUS] = (flags & RIS_TISSUE_FLAG_CONTINUOUS) != 0,
+                        [RIS_CONSTANT_LIPS] = VK_TRUE};
+    VkSpecializationMapEntry entry[sizeof value / sizeof *value];
+    const VkSpecializationInfo constants = {.mapEntryCount = sizeof value / sizeof *value,
+                                            .pMapEntries = entry,
+                                            .dataSize = sizeof value,
+                                            .pData = value};
     ris_result result = RIS_OK;
+    for (uint32_t c = 0; c < constants.mapEntryCount; c++) {
+        entry[c] = (VkSpecializationMapEntry){c, c * (uint32_t)sizeof *value, sizeof *value};
+    }
     RIS_TRY(ris_vk_layout_create(sim->vk, sim->mem.sets.layout, VK_SHADER_STAGE_COMPUTE_BIT,
                                  sizeof(ris_sim_push), &sim->layout, err));
     for (uint32_t s = 0; s < RIS_STAGE_COUNT; s++) {
-        RIS_TRY(ris_vk_compute_create(sim->vk, sim->layout, (ris_vk_code){code[s].words, code[s].size},
-                                      ris_stage_name((ris_stage)s), &sim->pipeline[s], err));
+        RIS_TRY(ris_vk_compute_create(sim->vk, sim->layout, code[s], &constants, ris_stage_name((ris_stage)s),
+                                      &sim->pipeline[s], err));
     }
+    value[RIS_CONSTANT_LIPS] = VK_FALSE;
+    RIS_TRY(ris_vk_compute_create(sim->vk, sim->layout, code[RIS_STAGE_CONTACT], &constants,
+                                  "contact, bodies", &sim->contact_bodies, err));
 fail:
     return result;
 }
@@ -106,18 +119,32 @@ static void record_start(const vk_sim *sim, VkCommandBuffer cmd)
                        &sim->model->push);
 }
 
-static void record_stage(const vk_sim *sim, VkCommandBuffer cmd, ris_stage stage)
-{
-    vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, sim->pipeline[stage]);
-    const uint32_t count = stage == RIS_STAGE_CONTACT      ? sim->model->push.contact_node_count
-                           : stage == RIS_STAGE_LIP_NORMAL ? sim->model->push.lip_node_count
-                                                           : sim->model->node_count;
-    vkCmdDispatch(cmd, (count + RIS_GROUP_NODE - 1) / RIS_GROUP_NODE, 1, 1);
-}
-
 static void record_between(VkCommandBuffer cmd)
 {
     ris_vk_barrier(cmd, compute, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, compute, shader_access);
+}
+
+static void record_dispatch(VkCommandBuffer cmd, VkPipeline pipeline, uint32_t count)
+{
+    if (count > 0) {
+        vkCmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
+        vkCmdDispatch(cmd, (count + RIS_GROUP_NODE - 1) / RIS_GROUP_NODE, 1, 1);
+    }
+}
+
+static void record_stage(const vk_sim *sim, VkCommandBuffer cmd, ris_stage stage)
+{
+    const ris_sim_push *push = &sim->model->push;
+    switch (stage) {
+    case RIS_STAGE_LIP_NORMAL: record_dispatch(cmd, sim->pipeline[stage], push->lip_node_count); break;
+    case RIS_STAGE_CONTACT:
+        record_dispatch(cmd, sim->pipeline[stage], push->lip_node_count);
+        record_between(cmd);
+        record_dispatch(cmd, sim->contact_bodies, push->contact_node_count - push->lip_node_count);
+        break;
+    case RIS_STAGE_NORMAL: record_dispatch(cmd, sim->pipeline[stage], push->node_count); break;
+    default: record_dispatch(cmd, sim->pipeline[stage], push->moving_count); break;
+    }
 }
 
 static void record_end(VkCommandBuffer cmd)
@@ -370,11 +397,8 @@ ris_result ris__vk_sim_swap_bindings(ris_sim *front, uint32_t a, uint32_t b, ris
     if (a >= RIS_BIND_COUNT || b >= RIS_BIND_COUNT) {
         return ris_fail(err, RIS_ERROR_FAILED, "bindings %u and %u, expected below %d", a, b, RIS_BIND_COUNT);
     }
-    const vk_range first = sim->mem.range[a], second = sim->mem.range[b];
-    ris_vk_sets_write_buffer(sim->vk, &sim->mem.sets, 0, a, second.buffer->handle, second.offset,
-                             second.size + RIS__VK_GUARD);
-    ris_vk_sets_write_buffer(sim->vk, &sim->mem.sets, 0, b, first.buffer->handle, first.offset,
-                             first.size + RIS__VK_GUARD);
+    ris__vk_state_bind(sim->vk, &sim->mem, a, b);
+    ris__vk_state_bind(sim->vk, &sim->mem, b, a);
     sim->recorded_substeps = 0; /* the recorded frame holds the old set */
     return RIS_OK;
 }

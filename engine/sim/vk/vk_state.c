@@ -1,5 +1,6 @@
 #include "sim/vk/vk_state.h"
 
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,7 +14,7 @@ static const uint32_t state_bindings[] = {RIS_BIND_POSITION, RIS_BIND_VELOCITY_H
 static const uint32_t table_bindings[] = {
     RIS_BIND_REST,          RIS_BIND_SPRING_START, RIS_BIND_HALF_SPRING,  RIS_BIND_RING_START,
     RIS_BIND_RING,          RIS_BIND_ANCHOR_PARAM, RIS_BIND_CONTACT_NODE, RIS_BIND_CONTACT_TOUCH,
-    RIS_BIND_CONTACT_OTHER, RIS_BIND_CONTACT_GRID, RIS_BIND_HEFT};
+    RIS_BIND_CONTACT_OTHER, RIS_BIND_CONTACT_GRID, RIS_BIND_HEFT,         RIS_BIND_MOVING};
 static const uint32_t anchor_bindings[] = {RIS_BIND_ANCHOR_POINT, RIS_BIND_ANCHOR_DELTA,
                                            RIS_BIND_CONTACT_BODY, RIS_BIND_INERTIA};
 #define COUNT(list) ((uint32_t)(sizeof(list) / sizeof(list)[0]))
@@ -23,11 +24,20 @@ _Static_assert(sizeof(ris_vec4) == 16 && sizeof(ris_half_spring) == 20 && sizeof
                    sizeof(ris_contact_body) == 80 && sizeof(ris_contact_node) == 24 &&
                    sizeof(ris_contact_touch) == 12 && sizeof(ris_inertia) == 48,
                "scalar layout");
+_Static_assert(offsetof(ris_half_spring, rest_mm) == 4 && offsetof(ris_half_spring, area_ratio) == 8 &&
+                   offsetof(ris_half_spring, bend_out) == 12 && offsetof(ris_half_spring, bend_in) == 16,
+               "words of shaders/lib/half_spring.glsl");
 _Static_assert(sizeof(ris_sim_push) <= 128, "push constants");
 _Static_assert(sizeof state_bindings / sizeof(uint32_t) + sizeof table_bindings / sizeof(uint32_t) +
                        sizeof anchor_bindings / sizeof(uint32_t) ==
                    RIS_BIND_COUNT,
                "every binding belongs to one buffer");
+
+/* Small, of fixed size and read by every invocation. */
+static bool is_uniform(uint32_t binding)
+{
+    return binding == RIS_BIND_CONTACT_BODY || binding == RIS_BIND_INERTIA;
+}
 
 uint32_t ris__vk_state_binding(ris_state state)
 {
@@ -76,6 +86,7 @@ static const void *initial(const ris_model *model, uint32_t binding, VkDeviceSiz
         return model->contact_grid;
     case RIS_BIND_CONTACT_BODY: *out_size = RIS_CONTACT_BODIES * sizeof(ris_contact_body); return NULL;
     case RIS_BIND_HEFT: *out_size = nodes * sizeof(float); return model->heft;
+    case RIS_BIND_MOVING: *out_size = model->moving_count * sizeof(uint32_t); return model->moving;
     case RIS_BIND_INERTIA: *out_size = sizeof(ris_inertia); return NULL;
     case RIS_BIND_ANCHOR_POINT: *out_size = nodes * sizeof(ris_anchor_point); return NULL;
     default: *out_size = nodes * sizeof(ris_vec4); return NULL;
@@ -142,7 +153,10 @@ static ris_result fill_buffer(ris_device *vk, const ris_model *model, ris_vk_use
             memcpy(bytes + range->offset + range->size + g, &sentinel, sizeof sentinel);
         }
     }
-    RIS_TRY(ris_vk_buffer_create(vk, use, size, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, name, out, err));
+    RIS_TRY(ris_vk_buffer_create(vk, use, size,
+                                 VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
+                                     VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT,
+                                 name, out, err));
     RIS_TRY(ris_vk_buffer_write(vk, out, 0, bytes, size, err));
 fail:
     free(bytes);
@@ -159,10 +173,65 @@ static ris_result create_anchor_copy(ris_device *vk, const ris_model *model, vk_
                        state, &state->anchor_device, err);
 }
 
+/* The array that texel binding `texel` shows. */
+static uint32_t array_of(uint32_t texel)
+{
+    switch (texel) {
+    case RIS_TEXEL_POSITION: return RIS_BIND_POSITION;
+    case RIS_TEXEL_REST: return RIS_BIND_REST;
+    case RIS_TEXEL_BEND: return RIS_BIND_BEND;
+    case RIS_TEXEL_NORMAL: return RIS_BIND_NORMAL;
+    case RIS_TEXEL_FREE: return RIS_BIND_FREE;
+    case RIS_TEXEL_HALF_SPRING: return RIS_BIND_HALF_SPRING;
+    default: return RIS_BIND_CONTACT_GRID;
+    }
+}
+
+static ris_result create_texels(ris_device *vk, vk_state *state, ris_error *err)
+{
+    ris_result result = RIS_OK;
+    const uint32_t most = vk->properties.limits.maxTexelBufferElements;
+    for (uint32_t t = RIS_BIND_COUNT; t < RIS_TEXEL_END; t++) {
+        const bool words = t == RIS_TEXEL_HALF_SPRING;
+        const vk_range *range = &state->range[array_of(t)];
+        const VkBufferViewCreateInfo info = {.sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
+                                             .buffer = range->buffer->handle,
+                                             .format =
+                                                 words ? VK_FORMAT_R32_UINT : VK_FORMAT_R32G32B32A32_SFLOAT,
+                                             .offset = range->offset,
+                                             .range = range->size + RIS__VK_GUARD};
+        const VkDeviceSize texels = info.range / (words ? sizeof(uint32_t) : sizeof(ris_vec4));
+        if (texels > most) {
+            return ris_fail(err, RIS_ERROR_DATA,
+                            "an array of %llu elements to gather from, at most %u fit on %s",
+                            (unsigned long long)texels, most, vk->info.name);
+        }
+        RIS_VK(vkCreateBufferView(vk->handle, &info, NULL, &state->texel[t - RIS_BIND_COUNT]));
+    }
+fail:
+    return result;
+}
+
+void ris__vk_state_bind(ris_device *vk, vk_state *state, uint32_t binding, uint32_t array)
+{
+    const vk_range *range = &state->range[array];
+    VkBufferView view = VK_NULL_HANDLE;
+    ris_vk_sets_write_buffer(vk, &state->sets, 0, binding, range->buffer->handle, range->offset,
+                             range->size + (is_uniform(binding) ? 0 : RIS__VK_GUARD));
+    for (uint32_t t = RIS_BIND_COUNT; t < RIS_TEXEL_END; t++) {
+        view = array_of(t) == array ? state->texel[t - RIS_BIND_COUNT] : view;
+    }
+    for (uint32_t t = RIS_BIND_COUNT; t < RIS_TEXEL_END && view; t++) {
+        if (array_of(t) == binding) {
+            ris_vk_sets_write_texels(vk, &state->sets, 0, t, view);
+        }
+    }
+}
+
 ris_result ris__vk_state_create(ris_device *vk, const ris_model *model, vk_state *out, ris_error *err)
 {
     ris_result result;
-    VkDescriptorType type[RIS_BIND_COUNT];
+    VkDescriptorType type[RIS_TEXEL_END];
     memset(out, 0, sizeof *out);
     RIS_TRY(check_model(vk, model, err));
     RIS_TRY(fill_buffer(vk, model, RIS_VK_DEVICE, state_bindings, COUNT(state_bindings), "sim state", out,
@@ -176,14 +245,15 @@ ris_result ris__vk_state_create(ris_device *vk, const ris_model *model, vk_state
         RIS_TRY(ris_vk_buffer_create(vk, RIS_VK_READBACK, out->range[RIS_BIND_POSITION].size, 0,
                                      "sim readback", &out->readback, err));
     }
-    for (uint32_t b = 0; b < RIS_BIND_COUNT; b++) {
-        type[b] = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    for (uint32_t b = 0; b < RIS_TEXEL_END; b++) {
+        type[b] = b >= RIS_BIND_COUNT ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER
+                  : is_uniform(b)     ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
+                                      : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     }
-    RIS_TRY(ris_vk_sets_create(vk, type, RIS_BIND_COUNT, VK_SHADER_STAGE_COMPUTE_BIT, 1, &out->sets, err));
+    RIS_TRY(create_texels(vk, out, err));
+    RIS_TRY(ris_vk_sets_create(vk, type, RIS_TEXEL_END, VK_SHADER_STAGE_COMPUTE_BIT, 1, &out->sets, err));
     for (uint32_t b = 0; b < RIS_BIND_COUNT; b++) {
-        const vk_range *range = &out->range[b];
-        ris_vk_sets_write_buffer(vk, &out->sets, 0, b, range->buffer->handle, range->offset,
-                                 range->size + RIS__VK_GUARD);
+        ris__vk_state_bind(vk, out, b, b);
     }
     return RIS_OK;
 fail:
@@ -193,6 +263,9 @@ fail:
 
 void ris__vk_state_finish(ris_device *vk, vk_state *state)
 {
+    for (uint32_t t = 0; t < RIS_TEXEL_END - RIS_BIND_COUNT; t++) {
+        vkDestroyBufferView(vk->handle, state->texel[t], NULL);
+    }
     ris_vk_sets_finish(vk, &state->sets);
     ris_vk_buffer_finish(vk, &state->readback);
     ris_vk_buffer_finish(vk, &state->anchor_device);
