@@ -5,8 +5,8 @@
 
 #include <stdlib.h>
 
-#define BEND_EDGE_MM 4.0f /* a mean edge that long, or longer, has the bending of the tissue */
-#define BEND_MOST 16.0f   /* times that at most, for the step must stay stable */
+#define BEND_EDGE_MM 4.5f /* a mean edge that long, or longer, has the bending of the tissue */
+#define BEND_MOST 32.0f   /* times that at most, for the step must stay stable */
 
 ris_result ris__bake_mass(ris_bake *bake, ris_error *err)
 {

@@ -23,7 +23,7 @@ const float SHARE = 0.5; // of what is missing, a substep: each lip gives way by
 const float GLIDE = 0.5; // of its speed a touching node keeps, a substep
 const float FILM_MM = 0.1; // that much farther off the moist film still slows, or pressed lips tremble by microns;
 const float FILM_WEIGHT_FULL = 0.03; // with less of the other lip near it fades
-const float LIP_WEIGHT_FULL = 0.3; // with less of the other lip near, contact fades
+const float LIP_WEIGHT_FULL = 0.6; // with less of the other lip near, contact fades
 
 // What contact may change of a node.
 struct touched {

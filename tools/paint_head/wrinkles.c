@@ -147,7 +147,8 @@ static float round_the_mouth(const place *at, const ris_paint_zones *zones)
     const float band = ris_paint_step(7.4f, 8.6f, at->site->lip) * ris_paint_step(14, 10.5f, at->site->lip) *
                        ris_paint_step(corner.x * corner.x, 0.5f * corner.x * corner.x, p.x * p.x);
     const float fan = p.x / (at->s * (1 + 0.012f * fabsf(p.y - m->mouth.y)));
-    sum += 0.5f * band * ris_paint_noise(vec3(fan / 1.9f, p.y / (14 * at->s), 0), 443);
+    const float above = p.y > m->mouth.y ? 0.5f : 0.25f; /* below, the labiomental fold takes the rest */
+    sum += above * band * ris_paint_noise(vec3(fan / 1.9f, p.y / (14 * at->s), 0), 443);
     const ris_paint_cell pebble = ris_paint_cells(vec3_scale(p, 1 / (4.6f * at->s)), 449);
     sum += 0.7f * zones->chin * (0.9f - ris_paint_clamp(1.6f * (pebble.next - pebble.near), 0, 1));
     return sum;

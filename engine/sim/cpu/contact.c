@@ -12,7 +12,7 @@
 /* The moist film slows that much farther off, or pressed lips tremble by microns. */
 #define FILM_MM 0.1f
 #define FILM_WEIGHT_FULL 0.03f /* with less of the other lip near it fades */
-#define LIP_WEIGHT_FULL 0.3f   /* with less of the other lip near, contact fades */
+#define LIP_WEIGHT_FULL 0.6f   /* with less of the other lip near, contact fades */
 
 /* What contact may change of a node. */
 typedef struct touch {
