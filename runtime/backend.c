@@ -1,10 +1,13 @@
 #include "backend.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #ifdef RISORIUS_VULKAN
 #include "risorius/device.h"
 #endif
+
+#define SMALL_NODES 5000u /* below, lavapipe simulates faster without worker threads */
 
 bool backend_is_cpu(const ris_cli *cli)
 {
@@ -85,6 +88,9 @@ ris_result backend_start(ris_backend *backend, const ris_cli *cli, const backend
 {
     if (!need->sim && !need->draw) {
         return RIS_OK;
+    }
+    if (!need->draw && backend->model->node_count < SMALL_NODES) {
+        setenv("LP_NUM_THREADS", "0", 0);
     }
     ris_result r = open_device(backend, cli, need, err);
     if (!r && cli->verbose && backend->device) {

@@ -15,7 +15,6 @@
 #endif
 
 #define SAMPLES_MAX 10000000u /* frames x repeats */
-#define SMALL_NODES 5000u     /* below, lavapipe is faster without worker threads */
 #define TOLERANCE_MM 1e-2     /* of a device that is not bit-identical, as `compare` allows over a clip */
 #define COLUMNS (RIS_STAGE_COUNT + 4)
 
@@ -273,9 +272,6 @@ static ris_result open_bench(bench_run *bench, const ris_cli *cli, const bench_a
                               : ris_scene_model(&scene, &bench->backend.model, err);
     if (!r) {
         r = open_clip(bench, cli, args, err);
-    }
-    if (!r && bench->backend.model->node_count < SMALL_NODES) {
-        setenv("LP_NUM_THREADS", "0", 0);
     }
     if (!r && (uint64_t)bench->ticks * args->repeats > SAMPLES_MAX) {
         r = ris_fail(err, RIS_ERROR_USAGE, "--repeat: %u frames x %u repeats are more than %u", bench->ticks,

@@ -141,7 +141,7 @@ static void a_recipe_scores_one_by_its_own_sculpt(void **state)
                       "{\"unit\":\"jaw\",\"recipe\":\"jaw.open=0.5\",\"argument\":\"a bone\"}",
                       ""),
            0, NULL);
-    assert_non_null(strstr(run.out, "  1.000   1.00   1.000  1.000  0.001"));
+    assert_non_null(strstr(run.out, "  1.000   1.00   1.000  1.000  0.00"));
     assert_non_null(strstr(run.out, "mean cos 1.000 over 1 units"));
     assert_non_null(strstr(run.out, "not counted  jaw: a bone"));
     assert_null(strstr(run.out, "BROKEN"));
