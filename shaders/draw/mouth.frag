@@ -22,18 +22,20 @@ void main()
     vec3 into = has_opening(RIS_DRAW_RIM_MOUTH) ? through_opening(RIS_DRAW_RIM_MOUTH, from_world(in_world)) : vec3(0.0, 0.0, 1.0);
     float seen = into.z < 0.0 ? 1.0 : length(into); // before the lips
     vec3 middle = seen > 1e-4 && into.z > 0.0 ? to_world(into) / seen : to_world(vec3(0.0, 0.0, 1.0));
-    float share = seen * (2.0 - seen) * clamp((dot(n, middle) + 0.45) / 1.45, 0.0, 1.0) * ao;
-    vec3 diffuse = ambient(normalize(n + middle)) * vec3(1.25, 1.15, 1.05) * share, shine = vec3(0.0);
+    // enamel passes light on: the front of a row stays bright where the lips leave it a slit only
+    float spread = sqrt(seen * (2.0 - seen));
+    float share = spread * clamp((dot(n, middle) + 0.45) / 1.45, 0.0, 1.0) * ao;
+    vec3 diffuse = ambient(normalize(n + middle)) * vec3(1.45, 1.38, 1.30) * share, shine = vec3(0.0);
     for (int k = 0; k < 2; k++) {
         vec3 l = view.light[k].xyz;
         // the lamp itself is seen where its shadow is not, and only as far as the opening looks its way
         float reach = smoothstep(0.0, 0.35, seen) * ao;
-        float shadow = k == 0 ? mix(0.40 * share, reach, key_shadow(in_world, n)) : 0.9 * share;
+        float shadow = k == 0 ? mix(0.65 * share, reach, key_shadow(in_world, n)) : 0.9 * share;
         diffuse += view.radiance[k].rgb * wrapped(vec3(dot(n, l)), vec3(0.35, 0.25, 0.22)) * shadow;
         shine += view.radiance[k].rgb * specular(n, v, l, 0.24, 0.04) * shadow;
     }
     // light that came off tongue, gums and cheeks is red, the more the deeper
-    diffuse *= mix(vec3(1.0, 0.72, 0.60), vec3(1.0), smoothstep(0.05, 0.65, seen));
+    diffuse *= mix(vec3(1.0, 0.72, 0.60), vec3(1.0), smoothstep(0.05, 0.45, seen));
     vec3 flesh = vec3(0.70, 0.24, 0.17) * (0.5 + 0.5 * ao) * seen * (2.0 - seen) * (1.0 - 0.7 * share);
     // what is mirrored: the room between the lips, dark flesh beside
     vec3 r = reflect(-v, n);

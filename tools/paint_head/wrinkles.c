@@ -50,9 +50,9 @@ static float glabella(const place *at)
 {
     const float wander = 0.5f * ris_paint_noise(vec3(at->x / 6, at->up / 6, 0), 431);
     const float first =
-        furrow(at->x - 9.3f - 0.10f * (at->up - 18) + wander, 1.8f) * between(7, 34, 9, at->up);
+        furrow(at->x - 9.3f - 0.10f * (at->up - 18) + wander, 1.8f) * between(7, 31, 13, at->up);
     const float second =
-        furrow(at->x - 14.8f - 0.2f * (at->up - 18) + wander, 1.6f) * between(14, 28, 6, at->up);
+        furrow(at->x - 14.8f - 0.2f * (at->up - 18) + wander, 1.6f) * between(12, 26, 7, at->up);
     float across = 0;
     static const float height[2] = {1.5f, 7.5f}, strength[2] = {0.34f, 0.30f};
     for (int k = 0; k < 2; k++) {
