@@ -15,4 +15,4 @@ if ! { cmake -S "$root" -B "$build" -DCMAKE_BUILD_TYPE=Release -DRISORIUS_TESTS=
 fi
 
 # a test that needs a device fails without one
-RIS_REQUIRE_GPU=1 ctest --test-dir "$build" --output-on-failure "$@"
+RIS_REQUIRE_GPU=1 ctest --test-dir "$build" --output-on-failure -j"$(nproc)" "$@"
