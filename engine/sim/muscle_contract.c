@@ -188,7 +188,8 @@ static ris_vec3 contract_ring(const ris_muscle *muscle, const ring_pose *ring, r
     }
     if (ring->pushed > 0.0f) {
         const ris_vec3 push = v3_lerp(ring->push[0], ring->push[1], f_smoothstep(along));
-        q = v3_mad(q, ris__lip_middle(along), push);
+        const float middle = ris__lip_middle(along); /* squared, or the corners crumple */
+        q = v3_mad(q, middle * middle, push);
     }
     if (ring->protrude > 0.0f && !ring->literal) {
         const float middle = ring->lip ? along : 0.5f; /* a closed ring has no ends to stay */
