@@ -22,8 +22,8 @@ void main()
     vec3 into = has_opening(RIS_DRAW_RIM_MOUTH) ? through_opening(RIS_DRAW_RIM_MOUTH, from_world(in_world)) : vec3(0.0, 0.0, 1.0);
     float seen = into.z < 0.0 ? 1.0 : length(into); // before the lips
     vec3 middle = seen > 1e-4 && into.z > 0.0 ? to_world(into) / seen : to_world(vec3(0.0, 0.0, 1.0));
-    // enamel passes light on: the front of a row stays bright where the lips leave it a slit only
-    float spread = sqrt(seen * (2.0 - seen));
+    // enamel passes light on: the front of a row stays bright behind a narrow opening, if not behind closed lips
+    float spread = sqrt(seen * (2.0 - seen)) * smoothstep(0.0, 0.25, seen);
     float share = spread * clamp((dot(n, middle) + 0.45) / 1.45, 0.0, 1.0) * ao;
     vec3 diffuse = ambient(normalize(n + middle)) * vec3(1.45, 1.38, 1.30) * share, shine = vec3(0.0);
     for (int k = 0; k < 2; k++) {
