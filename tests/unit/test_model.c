@@ -181,6 +181,24 @@ static float stiffness_of(const ris_tissue_def *tissue, const ris_model *model, 
     return tissue->bending * tissue->stiffness_scale * 20.25f / (mean * mean);
 }
 
+static uint32_t springs_of(const ris_model *model, uint32_t i)
+{
+    return model->spring_start[i + 1] - model->spring_start[i];
+}
+
+/* The list of the stages: every moving node once, those with more springs first (fewer nodes than a window holds). */
+static void check_moving_list(const ris_model *model)
+{
+    uint8_t seen[512] = {0};
+    assert_true(model->node_count <= sizeof seen);
+    assert_int_equal(model->push.moving_count, model->moving_count);
+    for (uint32_t k = 0; k < model->moving_count; ++k) {
+        const uint32_t i = model->moving[k];
+        assert_true(i < model->node_count && model->rest_position[i].w > 0.0f && seen[i]++ == 0);
+        assert_true(k == 0 || springs_of(model, model->moving[k - 1]) >= springs_of(model, i));
+    }
+}
+
 /* KA-09, and the umbrella: weights of a moving node sum to 1, the transpose carries the stiffness, which grows
  * as edges get shorter than 4.5 mm; static umbrellas are left out. */
 static void moving_nodes_and_umbrellas(void **state)
@@ -194,6 +212,7 @@ static void moving_nodes_and_umbrellas(void **state)
     ris_error err = {0};
     assert_int_equal(ris_scene_model(&def, &model, &err), RIS_OK);
     assert_int_equal(model->moving_count, 9 * 11);
+    check_moving_list(model);
     for (uint32_t i = 0; i < model->node_count; ++i) {
         const bool moves = model->rest_position[i].w > 0.0f;
         float sum = 0.0f;
