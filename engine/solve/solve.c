@@ -27,6 +27,9 @@
 #define LAST_DAMPING 1e-3
 #define GOOD_SHARE 0.01 /* of the distance from rest: nearer than this no other attempt is made */
 #define GOOD_MM 0.01
+#define ONE_BY_ONE 12        /* controls that the first attempt takes, at most */
+#define NEAR_MM 0.003        /* nobody is missing */
+#define ONE_BY_ONE_GAIN 0.98 /* and each must bring the distance down to this share */
 
 /* How a search sets out from rest: the secants there, where a little of a muscle says nothing yet; how short its first steps
  * are; and how dear activation is while the face is far. Dear, because antagonists cost nothing else: loaded against each other
@@ -103,6 +106,7 @@ static ris_result open_solver(ris_solver *s, ris_error *err)
         {&s->tried_seen, rows, sizeof *s->tried_seen},
         {&s->tried_pose, channels, sizeof *s->tried_pose},
         {&s->wanted, n, sizeof *s->wanted},
+        {&s->taken, n, sizeof *s->taken},
         {&s->position, nodes, sizeof *s->position},
     };
     ris_result r = ris__snapshot_make(s->model, &s->now, err);
@@ -127,7 +131,7 @@ static void close_solver(ris_solver *s)
     void *const list[] = {s->knob,       s->unit,   s->u,        s->step,   s->frozen,  s->pose,
                           s->seen,       s->column, s->gram,     s->damped, s->work,    s->g,
                           s->right,      s->low,    s->high,     s->d,      s->tried_u, s->tried_seen,
-                          s->tried_pose, s->wanted, s->position, s->drive};
+                          s->tried_pose, s->wanted, s->position, s->drive,  s->taken};
     ris__snapshot_free(&s->now);
     for (size_t k = 0; k < sizeof list / sizeof *list; ++k) {
         free(list[k]);
@@ -425,16 +429,64 @@ static ris_result search(ris_solver *s, ris_error *err)
     return r;
 }
 
+/* The control left out that a step would gain most by, alone; n if there is none. Columns and descents must be those at u. */
+static uint32_t best_left_out(const ris_solver *s, const bool *taken)
+{
+    uint32_t found = s->n;
+    double most = 0;
+    for (uint32_t k = 0; k < s->n; ++k) {
+        const double square = s->gram[(size_t)k * s->n + k];
+        const double way = s->g[k] > 0 ? s->knob[k].high - s->u[k] : s->u[k] - s->knob[k].low;
+        if (!taken[k] && square > 0 && way > RIS_SOLVER_NOTHING && s->g[k] * s->g[k] / square > most) {
+            most = s->g[k] * s->g[k] / square;
+            found = k;
+        }
+    }
+    return found;
+}
+
+/* The first attempt: from rest, one control more at a time (orthogonal matching pursuit, Pati and others 1993). What the others would
+ * spread over antagonists that hold each other is found as the one muscle it was. */
+static ris_result search_one_by_one(ris_solver *s, ris_solve_result *out, ris_error *err)
+{
+    bool *taken = s->taken;
+    double before = INFINITY;
+    ris_result r = start(s, &attempts[0], out, err);
+    memset(taken, 0, s->n * sizeof *taken);
+    for (int round = 0;
+         !r && round < ONE_BY_ONE && s->rms_mm > NEAR_MM && s->rms_mm < ONE_BY_ONE_GAIN * before; ++round) {
+        before = s->rms_mm;
+        memset(s->frozen, 0, s->n * sizeof *s->frozen);
+        r = ris__solver_linearise(s, true, err);
+        const uint32_t more = r ? s->n : best_left_out(s, taken);
+        if (more == s->n) {
+            break;
+        }
+        taken[more] = true;
+        for (uint32_t k = 0; k < s->n; ++k) {
+            s->frozen[k] = !taken[k];
+        }
+        s->caution = LITTLE_CAUTION;
+        s->damping = LAST_DAMPING;
+        r = search(s, err);
+    }
+    memset(s->frozen, 0, s->n * sizeof *s->frozen);
+    return r;
+}
+
 /* Searches anew, on other ways, while the face stays far; the nearest is the state. best: (n). */
 static ris_result search_all(ris_solver *s, ris_solve_result *out, double *best, ris_error *err)
 {
     double nearest = INFINITY;
     ris_result r = RIS_OK;
-    for (size_t a = 0; !r && a < ATTEMPTS && !(nearest <= fmax(GOOD_MM, GOOD_SHARE * out->rest_rms_mm));
+    for (size_t a = 0; !r && a <= ATTEMPTS &&
+                       !(nearest <= (a > 1 ? fmax(GOOD_MM, GOOD_SHARE * out->rest_rms_mm) : NEAR_MM));
          ++a) {
-        r = start(s, &attempts[a], out, err);
-        if (!r) {
-            r = search(s, err);
+        if (a == 0) {
+            r = search_one_by_one(s, out, err);
+        } else {
+            r = start(s, &attempts[a - 1], out, err);
+            r = r ? r : search(s, err);
         }
         if (!r && s->rms_mm < nearest) {
             nearest = s->rms_mm;

@@ -39,7 +39,7 @@ typedef struct ris_solver {
     /* the normal equations of a step, per point of the target, and what solves them */
     double *gram, *damped, *work; /* gram: room for 2 n x 2 n; damped: n x n; work: 4 n^2 + 2 n */
     double *g, *right, *low, *high, *d, *tried_u; /* (n) */
-    bool *wanted;                                 /* (n) */
+    bool *wanted, *taken;                         /* (n) */
     float *tried_seen, *tried_pose;               /* (rows), (channel_count) */
     ris_vec4 *position;                           /* (node_count) */
 } ris_solver;
