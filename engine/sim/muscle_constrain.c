@@ -170,8 +170,7 @@ static ris_vec3 carried_along(const ris_rig *rig, uint32_t m)
     if (!(most > 0.0f)) {
         return v3(0.0f, 0.0f, 0.0f);
     }
-    const float free =
-        (left - right) / most; /* a corner that pulls back, were it by half, holds the ring where it is */
+    const float free = (left - right) / most; /* 0.5 where one corner pulls half as far as the other */
     return v3_scale(side, taut * (left - right) * (free * free * free * free));
 }
 

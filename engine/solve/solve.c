@@ -28,7 +28,7 @@
 #define GOOD_SHARE 0.01 /* of the distance from rest: nearer than this no other attempt is made */
 #define GOOD_MM 0.01
 #define ONE_BY_ONE 12        /* controls that the first attempt takes, at most */
-#define NEAR_MM 0.003        /* nobody is missing */
+#define NEAR_MM 0.003        /* nearer than this no control is missing: no other attempt is made */
 #define ONE_BY_ONE_GAIN 0.98 /* and each must bring the distance down to this share */
 
 /* How a search sets out from rest: the secants there, where a little of a muscle says nothing yet; how short its first steps
@@ -445,8 +445,8 @@ static uint32_t best_left_out(const ris_solver *s, const bool *taken)
     return found;
 }
 
-/* The first attempt: from rest, one control more at a time (orthogonal matching pursuit, Pati and others 1993). What the others would
- * spread over antagonists that hold each other is found as the one muscle it was. */
+/* The first attempt: from rest, one control more at a time (orthogonal matching pursuit, Pati and others 1993). What the
+ * others would spread over antagonists that hold each other is found as the one muscle it was. */
 static ris_result search_one_by_one(ris_solver *s, ris_solve_result *out, ris_error *err)
 {
     bool *taken = s->taken;
