@@ -82,8 +82,8 @@ static int close_all(void **state)
 
 static void seeded_poses_are_found_again(void **state)
 {
-    static const uint32_t number[] = {0, 2,
-                                      84}; /* 84: one muscle, which all controls at once take for three */
+    static const uint32_t number[] = {
+        0, 2, 84}; /* 84: one muscle, found as one in 2 iterations; 32 with all controls at once */
     (void)state;
     for (size_t n = 0; n < sizeof number / sizeof *number; ++n) {
         char *text = ris__soak_pose_text(model, 1, (ris_soak_id){RIS_SOAK_FEW, number[n]});
@@ -98,6 +98,7 @@ static void seeded_poses_are_found_again(void **state)
                       result.rms_mm, result.iterations);
         assert_true(result.rest_rms_mm > 0.1);
         assert_true(result.rms_mm < 0.05);
+        assert_true(number[n] != 84 || result.iterations < 10);
         for (uint32_t k = 0; k < control_count; ++k) {
             const float range = fmaxf(-control[k].minimum, control[k].maximum);
             const float off = fabsf(found[k].value - pose[ris_model_channel(model, control[k].name)]) / range;
