@@ -13,7 +13,6 @@
 #define LARGEST_STEP 0.2 /* secants later: as wide as the last way, within these */
 #define SMALLEST_STEP 0.05
 #define LAST_STEP 0.1 /* at the pose found */
-#define LITTLE 0.1
 #define HOLD_S 4.0
 #define GLANCE_MM 0.1 /* while the face is farther, what moves late is less than what is left: */
 #define GLANCE_S 0.2  /* then it is held for so long only */
@@ -23,20 +22,19 @@
 #define STALLS 2
 #define QUICK 0.5 /* after an iteration that gained more, what does not act is not asked again */
 
-#define LITTLE_CAUTION 0.01
-#define LAST_DAMPING 1e-3
 #define GOOD_SHARE 0.01 /* of the distance from rest: nearer than this no other attempt is made */
 #define GOOD_MM 0.01
-#define ONE_BY_ONE 12        /* controls that the first attempt takes, at most */
-#define NEAR_MM 0.003        /* nearer than this no control is missing: no other attempt is made */
-#define ONE_BY_ONE_GAIN 0.98 /* and each must bring the distance down to this share */
 
 /* How a search sets out from rest: the secants there, where a little of a muscle says nothing yet; how short its first steps
  * are; and how dear activation is while the face is far. Dear, because antagonists cost nothing else: loaded against each other
- * they end where the closed jaw answers to nothing that opens it. */
+ * they end where the closed jaw answers to nothing that opens it. The first takes few controls, the others all at once. */
 static const struct attempt {
+    bool few;
     double first_step, damping, caution;
-} attempts[] = {{0.5, 1e-3, 0.1}, {0.25, 0.3, 0.3}, {1, 0.03, 0.03}};
+} attempts[] = {{.few = true, .first_step = 0.5},
+                {false, 0.5, 1e-3, 0.1},
+                {false, 0.25, 0.3, 0.3},
+                {false, 1, 0.03, 0.03}};
 #define ATTEMPTS (sizeof attempts / sizeof *attempts)
 
 bool ris_control_independent(const ris_control_found *found)
@@ -106,7 +104,6 @@ static ris_result open_solver(ris_solver *s, ris_error *err)
         {&s->tried_seen, rows, sizeof *s->tried_seen},
         {&s->tried_pose, channels, sizeof *s->tried_pose},
         {&s->wanted, n, sizeof *s->wanted},
-        {&s->taken, n, sizeof *s->taken},
         {&s->position, nodes, sizeof *s->position},
     };
     ris_result r = ris__snapshot_make(s->model, &s->now, err);
@@ -131,7 +128,7 @@ static void close_solver(ris_solver *s)
     void *const list[] = {s->knob,       s->unit,   s->u,        s->step,   s->frozen,  s->pose,
                           s->seen,       s->column, s->gram,     s->damped, s->work,    s->g,
                           s->right,      s->low,    s->high,     s->d,      s->tried_u, s->tried_seen,
-                          s->tried_pose, s->wanted, s->position, s->drive,  s->taken};
+                          s->tried_pose, s->wanted, s->position, s->drive};
     ris__snapshot_free(&s->now);
     for (size_t k = 0; k < sizeof list / sizeof *list; ++k) {
         free(list[k]);
@@ -217,8 +214,7 @@ static double descent(const ris_solver *s, uint32_t k)
     return sum / s->target->count;
 }
 
-/* A control with two sides at rest: only the side that helps is open. */
-static bool is_at_fork(const ris_solver *s, uint32_t k)
+bool ris__solver_is_at_fork(const ris_solver *s, uint32_t k)
 {
     return s->knob[k].low < 0 && s->knob[k].high > 0 && fabs(s->u[k]) <= RIS_SOLVER_NOTHING;
 }
@@ -226,7 +222,7 @@ static bool is_at_fork(const ris_solver *s, uint32_t k)
 void ris__solver_choose_step(ris_solver *s, uint32_t k, double size)
 {
     const ris_knob *knob = &s->knob[k];
-    if (fabs(s->u[k]) > RIS_SOLVER_NOTHING && fabs(s->u[k]) < LITTLE) {
+    if (fabs(s->u[k]) > RIS_SOLVER_NOTHING && fabs(s->u[k]) < RIS_SOLVER_LITTLE) {
         s->step[k] = -s->u[k];
         return;
     }
@@ -251,7 +247,7 @@ static ris_result respond(ris_solver *s, bool all, ris_error *err)
     for (uint32_t k = 0; k < s->n && !r; ++k) {
         s->g[k] = descent(s, k);
         const double other = s->u[k] - s->step[k];
-        s->wanted[k] = s->wanted[k] && is_at_fork(s, k) && s->g[k] * s->step[k] < 0 &&
+        s->wanted[k] = s->wanted[k] && ris__solver_is_at_fork(s, k) && s->g[k] * s->step[k] < 0 &&
                        other <= s->knob[k].high && other >= s->knob[k].low;
         s->step[k] = s->wanted[k] ? -s->step[k] : s->step[k];
         any = any || s->wanted[k];
@@ -277,6 +273,13 @@ ris_result ris__solver_linearise(ris_solver *s, bool all, ris_error *err)
     return r;
 }
 
+void ris__solver_bounds(const ris_solver *s, uint32_t k, double *out_low, double *out_high)
+{
+    const bool fork = ris__solver_is_at_fork(s, k);
+    *out_low = fork && s->step[k] > 0 ? fmin(-s->u[k], 0) : s->knob[k].low - s->u[k];
+    *out_high = fork && s->step[k] < 0 ? fmax(-s->u[k], 0) : s->knob[k].high - s->u[k];
+}
+
 /* The step for the present damping: into d, within the bounds. False if there is none. */
 static bool find_step(const ris_solver *s)
 {
@@ -284,11 +287,9 @@ static bool find_step(const ris_solver *s)
     const double ridge = s->ridge_mm * s->ridge_mm;
     memcpy(s->damped, s->gram, (size_t)n * n * sizeof *s->gram);
     for (uint32_t k = 0; k < n; ++k) {
-        const bool fork = is_at_fork(s, k);
         s->damped[(size_t)k * n + k] += ridge + s->damping * (s->gram[(size_t)k * n + k] + ridge);
         s->right[k] = s->g[k] - ridge * s->u[k];
-        s->low[k] = fork && s->step[k] > 0 ? fmin(-s->u[k], 0) : s->knob[k].low - s->u[k];
-        s->high[k] = fork && s->step[k] < 0 ? fmax(-s->u[k], 0) : s->knob[k].high - s->u[k];
+        ris__solver_bounds(s, k, &s->low[k], &s->high[k]);
         if (s->frozen[k]) {
             s->right[k] = s->low[k] = s->high[k] = 0;
         }
@@ -358,13 +359,11 @@ ris_result ris__solver_improve(ris_solver *s, double *out_gain, ris_error *err)
 }
 
 /* Rest, as the place to start from. */
-static ris_result start(ris_solver *s, const struct attempt *attempt, ris_solve_result *out, ris_error *err)
+static ris_result start(ris_solver *s, double first_step, ris_solve_result *out, ris_error *err)
 {
     bool rest;
     memset(s->u, 0, s->n * sizeof *s->u);
     memset(s->pose, 0, s->model->channel_count * sizeof *s->pose);
-    s->damping = attempt->damping;
-    s->caution = attempt->caution;
     s->glanced = false;
     for (uint32_t t = 0; t < s->def->sim_count; ++t) { /* equilibria count, not the way to them */
         ris_sim_set_onset(s->def->sim[t], false);
@@ -379,7 +378,7 @@ static ris_result start(ris_solver *s, const struct attempt *attempt, ris_solve_
     s->rms_mm = out->rest_rms_mm = r ? 0 : measure(s->target, s->seen, &out->rest_max_mm, &out->worst);
     for (uint32_t k = 0; k < s->n; ++k) {
         s->step[k] = 0;
-        ris__solver_choose_step(s, k, attempt->first_step);
+        ris__solver_choose_step(s, k, first_step);
     }
     return r;
 }
@@ -397,13 +396,15 @@ static ris_result settle(ris_solver *s, ris_error *err)
     return r;
 }
 
-static ris_result search(ris_solver *s, ris_error *err)
+ris_result ris__solver_search(ris_solver *s, double caution, double damping, ris_error *err)
 {
     const ris_solve_def *def = s->def;
     const uint32_t first = s->iteration, last = first + def->iteration_limit;
     double gain = 1;
     bool all = true; /* controls answer anew; after a quick gain only those that act */
     ris_result r = RIS_OK;
+    s->caution = caution;
+    s->damping = damping;
     for (uint32_t stalls = 0;
          !r && s->iteration < last && stalls < STALLS && gain > 0 && s->rms_mm > def->enough_mm;
          ++s->iteration) {
@@ -419,8 +420,8 @@ static ris_result search(ris_solver *s, ris_error *err)
         stalls = gain < (s->rms_mm > GOOD_MM ? STALLED : STALLED_NEAR) ? stalls + 1 : 0;
         if ((stalls == STALLS || gain == 0) && s->caution > 0 &&
             s->rms_mm > GOOD_MM) { /* at last the distance alone counts */
-            s->caution = s->caution > LITTLE_CAUTION ? LITTLE_CAUTION : 0;
-            s->damping = LAST_DAMPING;
+            s->caution = s->caution > RIS_SOLVER_LITTLE_CAUTION ? RIS_SOLVER_LITTLE_CAUTION : 0;
+            s->damping = RIS_SOLVER_LAST_DAMPING;
             stalls = 0;
             gain = 1;
         }
@@ -429,64 +430,20 @@ static ris_result search(ris_solver *s, ris_error *err)
     return r;
 }
 
-/* The control left out that a step would gain most by, alone; n if there is none. Columns and descents must be those at u. */
-static uint32_t best_left_out(const ris_solver *s, const bool *taken)
-{
-    uint32_t found = s->n;
-    double most = 0;
-    for (uint32_t k = 0; k < s->n; ++k) {
-        const double square = s->gram[(size_t)k * s->n + k];
-        const double way = s->g[k] > 0 ? s->knob[k].high - s->u[k] : s->u[k] - s->knob[k].low;
-        if (!taken[k] && square > 0 && way > RIS_SOLVER_NOTHING && s->g[k] * s->g[k] / square > most) {
-            most = s->g[k] * s->g[k] / square;
-            found = k;
-        }
-    }
-    return found;
-}
-
-/* The first attempt: from rest, one control more at a time (orthogonal matching pursuit, Pati and others 1993). What the
- * others would spread over antagonists that hold each other is found as the one muscle it was. */
-static ris_result search_one_by_one(ris_solver *s, ris_solve_result *out, ris_error *err)
-{
-    bool *taken = s->taken;
-    double before = INFINITY;
-    ris_result r = start(s, &attempts[0], out, err);
-    memset(taken, 0, s->n * sizeof *taken);
-    for (int round = 0;
-         !r && round < ONE_BY_ONE && s->rms_mm > NEAR_MM && s->rms_mm < ONE_BY_ONE_GAIN * before; ++round) {
-        before = s->rms_mm;
-        memset(s->frozen, 0, s->n * sizeof *s->frozen);
-        r = ris__solver_linearise(s, true, err);
-        const uint32_t more = r ? s->n : best_left_out(s, taken);
-        if (more == s->n) {
-            break;
-        }
-        taken[more] = true;
-        for (uint32_t k = 0; k < s->n; ++k) {
-            s->frozen[k] = !taken[k];
-        }
-        s->caution = LITTLE_CAUTION;
-        s->damping = LAST_DAMPING;
-        r = search(s, err);
-    }
-    memset(s->frozen, 0, s->n * sizeof *s->frozen);
-    return r;
-}
-
 /* Searches anew, on other ways, while the face stays far; the nearest is the state. best: (n). */
 static ris_result search_all(ris_solver *s, ris_solve_result *out, double *best, ris_error *err)
 {
     double nearest = INFINITY;
     ris_result r = RIS_OK;
-    for (size_t a = 0; !r && a <= ATTEMPTS &&
-                       !(nearest <= (a > 1 ? fmax(GOOD_MM, GOOD_SHARE * out->rest_rms_mm) : NEAR_MM));
+    for (size_t a = 0;
+         !r && a < ATTEMPTS &&
+         !(nearest <= (a > 1 ? fmax(GOOD_MM, GOOD_SHARE * out->rest_rms_mm) : RIS_SOLVER_NEAR_MM));
          ++a) {
-        if (a == 0) {
-            r = search_one_by_one(s, out, err);
-        } else {
-            r = start(s, &attempts[a - 1], out, err);
-            r = r ? r : search(s, err);
+        const struct attempt *way = &attempts[a];
+        r = start(s, way->first_step, out, err);
+        if (!r) {
+            r = way->few ? ris__solver_pursue(s, err)
+                         : ris__solver_search(s, way->caution, way->damping, err);
         }
         if (!r && s->rms_mm < nearest) {
             nearest = s->rms_mm;
@@ -509,7 +466,7 @@ static ris_result find_shares(ris_solver *s, ris_error *err)
     ris_result r = ris__solver_linearise(s, true, err);
     for (uint32_t k = 0; k < s->n; ++k) {
         const double other = s->u[k] - s->step[k];
-        s->wanted[k] = is_at_fork(s, k) && other <= s->knob[k].high && other >= s->knob[k].low;
+        s->wanted[k] = ris__solver_is_at_fork(s, k) && other <= s->knob[k].high && other >= s->knob[k].low;
         if (s->wanted[k]) {
             memcpy(s->column + (size_t)count++ * s->rows, s->column + (size_t)k * s->rows,
                    s->rows * sizeof *s->column);

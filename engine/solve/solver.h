@@ -39,7 +39,7 @@ typedef struct ris_solver {
     /* the normal equations of a step, per point of the target, and what solves them */
     double *gram, *damped, *work; /* gram: room for 2 n x 2 n; damped: n x n; work: 4 n^2 + 2 n */
     double *g, *right, *low, *high, *d, *tried_u; /* (n) */
-    bool *wanted, *taken;                         /* (n) */
+    bool *wanted;                                 /* (n) */
     float *tried_seen, *tried_pose;               /* (rows), (channel_count) */
     ris_vec4 *position;                           /* (node_count) */
 } ris_solver;
@@ -53,7 +53,28 @@ ris_result ris__snapshot_put(ris_sim *sim, const ris_snapshot *snapshot, ris_err
 ris_result ris__snapshot_make(const ris_model *model, ris_snapshot *out, ris_error *err);
 void ris__snapshot_free(ris_snapshot *snapshot);
 
+/* Where a search stands: values, what is seen, and the simulation there. */
+typedef struct ris_place {
+    double *u, *step; /* (n) */
+    bool *frozen;     /* (n) */
+    float *seen;      /* (rows) */
+    float *pose;      /* (channel_count) */
+    ris_snapshot now;
+    double rms_mm;
+    bool glanced;
+} ris_place;
+
+ris_result ris__place_make(const ris_solver *solver, ris_place *out, ris_error *err);
+void ris__place_free(ris_place *place);
+void ris__place_remember(const ris_solver *solver, ris_place *out);
+/* The solver and sim[0] stand there again. */
+ris_result ris__place_return(ris_solver *solver, const ris_place *place, ris_error *err);
+
 #define RIS_SOLVER_NOTHING 0.004 /* u as good as rest */
+#define RIS_SOLVER_LITTLE 0.1    /* u in which a muscle's hold on the skin still grows */
+#define RIS_SOLVER_LITTLE_CAUTION 0.01
+#define RIS_SOLVER_LAST_DAMPING 1e-3
+#define RIS_SOLVER_NEAR_MM 0.003 /* rms nearer than which no control is missing */
 
 /* A secant that stays in the range; up unless it cannot or the last one went down; of a little, to rest: a muscle's first tenth
  * is unlike the rest of its range. */
@@ -67,6 +88,15 @@ ris_result ris__solver_keep(ris_solver *solver, ris_error *err);
 /* Steps of growing damping until one brings the face nearer, after ris__solver_linearise. *out_gain: share of the cost that it
  * saved, 0 = none. */
 ris_result ris__solver_improve(ris_solver *solver, double *out_gain, ris_error *err);
+
+/* A control with two sides at rest: only the side that helps is open. */
+bool ris__solver_is_at_fork(const ris_solver *solver, uint32_t control);
+/* Bounds of a step of the control from u, each side of 0. */
+void ris__solver_bounds(const ris_solver *solver, uint32_t control, double *out_low, double *out_high);
+/* Steps of what is not frozen until nothing more is gained. caution as in ris_solver, first damping of its steps. */
+ris_result ris__solver_search(ris_solver *solver, double caution, double damping, ris_error *err);
+/* From rest, few controls: one more at a time, then in exchange for each other. */
+ris_result ris__solver_pursue(ris_solver *solver, ris_error *err);
 
 void ris__solver_find_drives(ris_solver *solver);
 /* Secants that lead out of the jaw's range, where nothing answers, go the other way where they can. */

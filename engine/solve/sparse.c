@@ -20,10 +20,7 @@ typedef struct thinning {
     uint32_t *index;       /* of the controls that act, those left first (n) */
     double *value;         /* what is left takes on, u (n) */
     double *factor, *unit; /* (n x n), (n) */
-    double *u;             /* before (n) */
-    float *seen, *pose;
-    bool *frozen;
-    ris_snapshot now;
+    ris_place before;
 } thinning;
 
 static ris_result open_thinning(const ris_solver *s, thinning *t, ris_error *err)
@@ -34,12 +31,8 @@ static ris_result open_thinning(const ris_solver *s, thinning *t, ris_error *err
     } room[] = {{&t->index, s->n, sizeof *t->index},
                 {&t->value, s->n, sizeof *t->value},
                 {&t->factor, (size_t)s->n * s->n, sizeof *t->factor},
-                {&t->unit, s->n, sizeof *t->unit},
-                {&t->u, s->n, sizeof *t->u},
-                {&t->seen, s->rows, sizeof *t->seen},
-                {&t->pose, s->model->channel_count, sizeof *t->pose},
-                {&t->frozen, s->n, sizeof *t->frozen}};
-    ris_result r = ris__snapshot_make(s->model, &t->now, err);
+                {&t->unit, s->n, sizeof *t->unit}};
+    ris_result r = ris__place_make(s, &t->before, err);
     for (size_t k = 0; !r && k < sizeof room / sizeof *room; ++k) {
         r = ris__model_alloc(room[k].out, room[k].count, room[k].size, "the solver", err);
     }
@@ -48,8 +41,8 @@ static ris_result open_thinning(const ris_solver *s, thinning *t, ris_error *err
 
 static void close_thinning(thinning *t)
 {
-    void *const list[] = {t->index, t->value, t->factor, t->unit, t->u, t->seen, t->pose, t->frozen};
-    ris__snapshot_free(&t->now);
+    void *const list[] = {t->index, t->value, t->factor, t->unit};
+    ris__place_free(&t->before);
     for (size_t k = 0; k < sizeof list / sizeof *list; ++k) {
         free(list[k]);
     }
@@ -127,30 +120,6 @@ static uint32_t guess(const ris_solver *s, const thinning *t, uint32_t count, do
     return count;
 }
 
-static void remember(const ris_solver *s, thinning *t)
-{
-    memcpy(t->u, s->u, s->n * sizeof *t->u);
-    memcpy(t->seen, s->seen, s->rows * sizeof *t->seen);
-    memcpy(t->pose, s->pose, s->model->channel_count * sizeof *t->pose);
-    memcpy(t->frozen, s->frozen, s->n * sizeof *t->frozen);
-    for (int k = 0; k < 4; ++k) {
-        memcpy(t->now.state[k], s->now.state[k], s->model->node_count * sizeof(ris_vec4));
-    }
-}
-
-static ris_result go_back(ris_solver *s, const thinning *t, double rms_mm, ris_error *err)
-{
-    memcpy(s->u, t->u, s->n * sizeof *t->u);
-    memcpy(s->seen, t->seen, s->rows * sizeof *t->seen);
-    memcpy(s->pose, t->pose, s->model->channel_count * sizeof *t->pose);
-    memcpy(s->frozen, t->frozen, s->n * sizeof *t->frozen);
-    for (int k = 0; k < 4; ++k) {
-        memcpy(s->now.state[k], t->now.state[k], s->model->node_count * sizeof(ris_vec4));
-    }
-    s->rms_mm = rms_mm;
-    return ris__snapshot_put(s->def->sim[0], &s->now, err);
-}
-
 /* Holds what the guess made of the pose, and lets what is left find its values anew. */
 static ris_result repair(ris_solver *s, const thinning *t, uint32_t left, double limit_mm, ris_error *err)
 {
@@ -181,18 +150,17 @@ static ris_result repair(ris_solver *s, const thinning *t, uint32_t left, double
 /* The jaw's own channels that only hold against closing muscles: without them the jaw stands where it stood. */
 static ris_result let_jaw_go(ris_solver *s, thinning *t, double limit_mm, ris_error *err)
 {
-    const double before = s->rms_mm;
     double rms;
     memcpy(s->tried_u, s->u, s->n * sizeof *s->u);
     if (!ris__solver_let_jaw_go(s, s->tried_u)) {
         return RIS_OK;
     }
-    remember(s, t);
+    ris__place_remember(s, &t->before);
     ris_result r = ris__solver_try(s, &rms, err);
     if (!r) {
         r = ris__solver_keep(s, err);
     }
-    return r || s->rms_mm <= limit_mm ? r : go_back(s, t, before, err);
+    return r || s->rms_mm <= limit_mm ? r : ris__place_return(s, &t->before, err);
 }
 
 ris_result ris__solver_thin_out(ris_solver *s, ris_error *err)
@@ -207,7 +175,6 @@ ris_result ris__solver_thin_out(ris_solver *s, ris_error *err)
     }
     for (int round = 0; !r && round < ROUNDS && refusals < REFUSALS; ++round) {
         uint32_t count = 0;
-        const double before = s->rms_mm;
         for (uint32_t k = 0; k < s->n; ++k) {
             ris__solver_choose_step(s, k, fabs(s->step[k]));
             if (!s->frozen[k]) {
@@ -221,10 +188,10 @@ ris_result ris__solver_thin_out(ris_solver *s, ris_error *err)
         if (r || left == count) {
             break;
         }
-        remember(s, &t);
+        ris__place_remember(s, &t.before);
         r = repair(s, &t, left, limit, err);
         if (!r && !(s->rms_mm <= limit)) {
-            r = go_back(s, &t, before, err);
+            r = ris__place_return(s, &t.before, err);
             slack /= 4;
             ++refusals;
         }
