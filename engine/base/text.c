@@ -146,7 +146,9 @@ void ris__nearest_add(ris_nearest *nearest, const char *name)
             return;
         }
     }
-    uint32_t distance = ris__edit_distance(nearest->wanted, name);
+    const size_t length = strlen(nearest->wanted);
+    const bool a_side_of_it = strncmp(name, nearest->wanted, length) == 0 && name[length] == '.';
+    const uint32_t distance = a_side_of_it ? 0 : ris__edit_distance(nearest->wanted, name);
     uint32_t place = nearest->count;
     while (place > 0 && distance < nearest->distance[place - 1]) {
         place--;

@@ -11,6 +11,8 @@
 #define LARGEST_CONTRACTION 0.95f
 #define SMALLEST_PARAMETER 0.01f
 #define ROOM_MM 6.0f       /* way of the lower incisors that lets a lip in between the teeth */
+#define CARRY 0.85f        /* of a push on one lip across the slit, taken over by the other that lies on it */
+#define CARRY_MM 3.0f      /* way of the lower incisors at which the lips lie on each other no more */
 #define ACTIVITY_FULL 0.1f /* activation from which on a muscle counts fully among those that act */
 
 void ris__contract_linear(const ris_vec3 *p, uint32_t n, float c, ris_vec3 *q)
@@ -132,6 +134,19 @@ typedef struct ring_pose {
     bool literal, lip;
 } ring_pose;
 
+/* Of a muscle of activation a that pushes ring `pushed`, on ring m: its own, or that of the other lip, which lies on it and is
+ * lifted, but not brought forward. */
+static void add_push(const ris_rig *rig, ring_pose *ring, uint32_t m, const ris_muscle *pusher, float a)
+{
+    const ris_vec3 none = {0}, axis = v3_unit_or(v3_sub(ring->axis[1], ring->axis[0]), none);
+    const bool own = pusher->pushed_ring == m;
+    const float share = own ? a : rig->carry * a;
+    const ris_vec3 push = own ? pusher->push : v3_mad(pusher->push, -v3_dot(axis, pusher->push), axis);
+    ris_vec3 *half = &ring->push[pusher->pushed_end];
+    *half = v3_mad(*half, share * pusher->max_shortening, push);
+    ring->pushed = f_max(ring->pushed, share);
+}
+
 static ring_pose pose_ring(const ris_rig *rig, uint32_t m, float c, const float *pose)
 {
     const ris_model *model = rig->model;
@@ -161,10 +176,8 @@ static ring_pose pose_ring(const ris_rig *rig, uint32_t m, float c, const float 
         if (other->tied_ring == m) {
             ring.tie[other->tied_end] = f_max(ring.tie[other->tied_end], a);
         }
-        if (other->pushed_ring == m && a > 0.0f) {
-            ring.push[other->pushed_end] =
-                v3_mad(ring.push[other->pushed_end], a * other->max_shortening, other->push);
-            ring.pushed = f_max(ring.pushed, a);
+        if (a > 0.0f && other->pushed_ring < model->muscle_count && ris__muscle_rolls(muscle)) {
+            add_push(rig, &ring, m, other, a);
         }
     }
     return ring;
@@ -200,6 +213,14 @@ static ris_vec3 contract_ring(const ris_muscle *muscle, const ring_pose *ring, r
     return q;
 }
 
+/* How far the jaw lets the lips lie on each other, so that one lifts the other, 0..1. */
+static float lips_carry(const ris_rig *rig)
+{
+    const ris_vec3 incisor = rig->model->head->jaw.incisor;
+    const float drop = incisor.y - ris__rigid_apply(&rig->jaw, incisor).y;
+    return CARRY * rig->meets * (1.0f - f_smoothstep(drop / CARRY_MM));
+}
+
 /* How far a lip that rolls in gets in between the teeth, 0..1: they must part and stand above each other, and it must not
  * be held out in front of them. */
 static float room_for_lips(const ris_rig *rig, const float *pose)
@@ -224,6 +245,7 @@ void ris__muscle_contract(ris_rig *rig, const float *pose)
         rig->puff[side] = f_clamp(pose[rig->first_beside + RIS__CHEEK_PUFF_L + side], -1.0f, 1.0f);
     }
     rig->suck = room_for_lips(rig, pose);
+    rig->carry = lips_carry(rig);
     rig->close = f_clamp(pose[rig->first_beside + RIS__LIPS_CLOSE], 0.0f, 1.0f);
     const bool literal = (model->push.flags & RIS_TISSUE_FLAG_KAEHLER) != 0;
     for (uint32_t m = 0; m < model->muscle_count; ++m) {

@@ -116,6 +116,7 @@ typedef struct ris_rig {
     float puff[2];      /* pressure in the left and right cheek, -1..1 */
     float close;        /* of the lips over an open jaw, 0..1 */
     float roll[2];      /* upper and lower lip, 1 = in, -1 = out */
+    float carry;        /* share of a push on one lip that lifts the other, 0..1 */
     float suck;         /* how far the teeth make room for a lip that rolls in, 0..1 */
     /* muscle_constrain */
     ris_corner *corner; /* of the mouth (group_count) */

@@ -89,6 +89,19 @@ static void mentalis_pushes_the_lip(void **state)
     assert_true(left.z > 2 * right.z);
 }
 
+/* AU17: the upper lip, which lies on the lower one, goes up with it, until the jaw has taken the lower one away (decision 24). */
+static void a_pushed_lip_lifts_the_other(void **state)
+{
+    (void)state;
+    const ris_vec3 place = {0, -48.3f, 102.2f};
+    const ris_vec3 shut = moves("mentalis=1", place), open = moves("jaw.open=0.3", place),
+                   raised = moves("jaw.open=0.3,mentalis=1", place);
+    print_message("upper lip: %.2f mm up with the chin, %.2f mm forward; %.2f mm over an open jaw\n",
+                  (double)shut.y, (double)shut.z, (double)(raised.y - open.y));
+    assert_true(shut.y > 1.0f && shut.z < 0.5f * shut.y);
+    assert_true(fabsf(raised.y - open.y) < 0.25f * shut.y);
+}
+
 /* AU21: the hollow under the jaw comes forward, the jaw's border hardly moves. */
 static void platysma_stands_out_in_the_neck(void **state)
 {
@@ -108,6 +121,7 @@ int main(void)
         cmocka_unit_test(pulls_alike_share),
         cmocka_unit_test(a_weak_pull_leaves_the_node_to_the_strong),
         cmocka_unit_test(mentalis_pushes_the_lip),
+        cmocka_unit_test(a_pushed_lip_lifts_the_other),
         cmocka_unit_test(platysma_stands_out_in_the_neck),
     };
     return cmocka_run_group_tests(tests, open_head, close_head);
