@@ -172,7 +172,7 @@ done:
 
 /* Binding of a vertex at rest to a triangle of the drawn surface, `away` from the point with those shares. */
 static bool bind_to_surface(const piece *skin, const uint32_t node[3], const float share[3], ris_vec3 away,
-                            ris_vec3 normal, ris_draw_ride *out)
+                            ris_vec3 normal, float turn, ris_draw_ride *out)
 {
     ris_vec3 a = skin->position[node[0]], b = skin->position[node[1]], c = skin->position[node[2]], frame[3];
     if (!ris__ride_frame(a, b, c, frame)) {
@@ -183,7 +183,8 @@ static bool bind_to_surface(const piece *skin, const uint32_t node[3], const flo
                            .b = node[1],
                            .c = node[2],
                            .share = {share[0], share[1], share[2], 0.0f},
-                           .offset = {offset.x, offset.y, offset.z, 0.0f}};
+                           .offset = {offset.x, offset.y, offset.z, 0.0f},
+                           .still = {away.x, away.y, away.z, turn}};
     out->normal = (ris_vec4){n.x * frame[0].x + n.y * frame[0].y + n.z * frame[0].z,
                              n.x * frame[1].x + n.y * frame[1].y + n.z * frame[1].z,
                              n.x * frame[2].x + n.y * frame[2].y + n.z * frame[2].z, 0.0f};
@@ -203,7 +204,7 @@ static ris_draw_ride ride_on_surface(const piece *skin, const ris_model *model, 
     ris_vec3 away = plus(part->mesh->position[vertex], foot, -1.0f), normal = part->normal[vertex];
     ris_draw_ride best = {0};
     float nearest = FLT_MAX;
-    if (bound->standing && bind_to_surface(skin, node, bound->share, away, normal, &best)) {
+    if (bound->standing && bind_to_surface(skin, node, bound->share, away, normal, bound->turn, &best)) {
         return best;
     }
     for (uint32_t q = first_quad; q < skin->refined.quad_count && skin->refined.quad_face[q] == face; q++) {
@@ -213,7 +214,7 @@ static ris_draw_ride ride_on_surface(const piece *skin, const ris_model *model, 
             float share[3],
                 distance = ris__ride_nearest(foot, skin->position[corner[0]], skin->position[corner[1]],
                                              skin->position[corner[2]], share);
-            if (distance < nearest && bind_to_surface(skin, corner, share, away, normal, &best)) {
+            if (distance < nearest && bind_to_surface(skin, corner, share, away, normal, 1.0f, &best)) {
                 nearest = distance;
             }
         }

@@ -8,6 +8,8 @@
 
 #define FAR_MM 1.5f /* a strand or card that reaches farther from the skin than this hangs on its root */
 #define SPREAD_PASSES 64
+#define LOWER_LASH_TURN                                                                                      \
+    0.3f /* of lashes of the lower lid: half-way they still stand up before the eye in a squint */
 
 static ris_vec3 sub(ris_vec3 a, ris_vec3 b)
 {
@@ -107,6 +109,17 @@ ris_vec3 ris__ride_offset(ris_vec3 p, ris_vec3 a, ris_vec3 b, ris_vec3 c, const 
     return (ris_vec3){dot(away, frame[0]), dot(away, frame[1]), dot(away, frame[2])};
 }
 
+ris_vec3 ris__ride_turn(ris_vec3 still, ris_vec3 turned, float turn)
+{
+    const ris_vec3 way = sub(turned, still);
+    const ris_vec3 v = {still.x + turn * way.x, still.y + turn * way.y, still.z + turn * way.z};
+    const float length = sqrtf(dot(v, v)), wanted = sqrtf(dot(still, still));
+    if (!(turn < 1.0f) || !(length > 0.0f)) {
+        return turned;
+    }
+    return (ris_vec3){v.x * wanted / length, v.y * wanted / length, v.z * wanted / length};
+}
+
 ris_vec3 ris__ride_place(const ris_ride *ride, const ris_vec4 *position)
 {
     ris_vec3 a = xyz(position[ride->vertex[0]]), b = xyz(position[ride->vertex[1]]),
@@ -114,7 +127,7 @@ ris_vec3 ris__ride_place(const ris_ride *ride, const ris_vec4 *position)
     ris_vec3 frame[3], at = blend(a, b, c, ride->share);
     if (ris__ride_frame(a, b, c, frame)) {
         const float along[3] = {ride->offset.x, ride->offset.y, ride->offset.z};
-        ris_vec3 away = blend(frame[0], frame[1], frame[2], along);
+        ris_vec3 away = ris__ride_turn(ride->still, blend(frame[0], frame[1], frame[2], along), ride->turn);
         at = (ris_vec3){at.x + away.x, at.y + away.y, at.z + away.z};
     }
     return at;
@@ -241,9 +254,20 @@ static void spread_roots(const ris_mesh *mesh, const float *reach, uint32_t *roo
     }
 }
 
+static void mark_lower_lids(const ris_model *model, bool *lower_lid)
+{
+    static const char *const names[] = {"lid_lower.L", "lid_lower.R"};
+    for (size_t k = 0; model->head && k < sizeof names / sizeof *names; ++k) {
+        const ris_region *region = ris_head_region(model->head, names[k]);
+        for (uint32_t i = 0; region && i < region->count; ++i) {
+            lower_lid[region->vertex[i]] = true;
+        }
+    }
+}
+
 /* Binding of vertex v at the foot of its root. */
 static ris_ride bind_vertex(const ris_model *model, const ris_mesh *mesh, uint32_t v, uint32_t root,
-                            uint32_t triangle, bool standing)
+                            uint32_t triangle, bool standing, const bool *lower_lid)
 {
     const uint32_t *n = model->triangle + 3 * (size_t)triangle;
     ris_vec3 a = xyz(model->rest_position[n[0]]), b = xyz(model->rest_position[n[1]]);
@@ -251,6 +275,8 @@ static ris_ride bind_vertex(const ris_model *model, const ris_mesh *mesh, uint32
     ris_ride ride = {.vertex = {n[0], n[1], n[2]}, .standing = standing};
     (void)ris__ride_nearest(mesh->position[root], a, b, c, ride.share);
     ride.offset = ris__ride_offset(mesh->position[v], a, b, c, ride.share);
+    ride.still = sub(mesh->position[v], blend(a, b, c, ride.share));
+    ride.turn = standing && (lower_lid[n[0]] || lower_lid[n[1]] || lower_lid[n[2]]) ? LOWER_LASH_TURN : 1.0f;
     return ride;
 }
 
@@ -261,8 +287,9 @@ ris_result ris__ride_bind(const ris_model *model, const ris_mesh *mesh, ris_ride
     uint32_t *triangle = malloc(count * sizeof *triangle), *root = malloc(count * sizeof *root);
     float *distance2 = malloc(count * sizeof *distance2), *reach = malloc(count * sizeof *reach), widest;
     span *all = sort_spans(model, &widest);
+    bool *lower_lid = calloc(model->node_count + 1u, sizeof *lower_lid);
     ris_result result = RIS_OK;
-    if (triangle == NULL || root == NULL || distance2 == NULL || reach == NULL || all == NULL) {
+    if (!triangle || !root || !distance2 || !reach || !all || !lower_lid) {
         result = ris_fail(err, RIS_ERROR_MEMORY, "out of memory for a skin-bound part of %u vertices",
                           (unsigned)mesh->vertex_count);
         goto done;
@@ -274,8 +301,10 @@ ris_result ris__ride_bind(const ris_model *model, const ris_mesh *mesh, ris_ride
     }
     spread_largest(mesh, reach);
     spread_roots(mesh, reach, root, distance2);
+    mark_lower_lids(model, lower_lid);
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
-        out[v] = bind_vertex(model, mesh, v, root[v], triangle[root[v]], reach[v] > FAR_MM * FAR_MM);
+        out[v] =
+            bind_vertex(model, mesh, v, root[v], triangle[root[v]], reach[v] > FAR_MM * FAR_MM, lower_lid);
         if (out_triangle != NULL) {
             out_triangle[v] = triangle[root[v]];
         }
@@ -286,6 +315,7 @@ done:
     free(root);
     free(distance2);
     free(reach);
+    free(lower_lid);
     return result;
 }
 

@@ -11,7 +11,11 @@ typedef struct ris_ride {
     uint32_t vertex[3];
     float share[3];  /* barycentric, sums to 1 */
     ris_vec3 offset; /* mm in the frame */
-    bool standing;   /* of a strand that stands off the skin */
+    ris_vec3 still;  /* the same at rest, mm in the space of the head */
+    float
+        turn; /* share of the triangle's turn that the offset follows, 0..1: less than 1 on the lower lid, whose edge
+                      * turns in before a squint, while the roots of its lashes sit in the tarsus and do not */
+    bool standing; /* of a strand that stands off the skin */
 } ris_ride;
 
 /* Binds the vertices of mesh to the skin of model at rest: out and out_triangle (mesh->vertex_count); out_triangle is the
@@ -24,5 +28,7 @@ float ris__ride_nearest(ris_vec3 p, ris_vec3 a, ris_vec3 b, ris_vec3 c, float sh
 bool ris__ride_frame(ris_vec3 a, ris_vec3 b, ris_vec3 c, ris_vec3 frame[3]);
 /* Offset of p from the barycentric point in the frame of the triangle. */
 ris_vec3 ris__ride_offset(ris_vec3 p, ris_vec3 a, ris_vec3 b, ris_vec3 c, const float share[3]);
+/* An offset at rest and as the triangle turned it, of the same length: the share `turn` of the way. */
+ris_vec3 ris__ride_turn(ris_vec3 still, ris_vec3 turned, float turn);
 /* Where a ridden vertex is for these vertex positions. */
 ris_vec3 ris__ride_place(const ris_ride *ride, const ris_vec4 *position);

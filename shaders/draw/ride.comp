@@ -26,7 +26,9 @@ void main()
         x /= lx;
         z /= lz;
         vec3 y = cross(z, x);
-        at += r.offset.x * x + r.offset.y * y + r.offset.z * z;
+        vec3 away = r.offset.x * x + r.offset.y * y + r.offset.z * z;
+        vec3 bent = mix(r.still.xyz, away, r.still.w);
+        at += r.still.w < 1.0 && dot(bent, bent) > 0.0 ? normalize(bent) * length(r.still.xyz) : away;
         n = r.normal.x * x + r.normal.y * y + r.normal.z * z;
     }
     position[r.target] = vec4(at, 1.0);

@@ -86,6 +86,7 @@ RIS_DRAW_STRUCT(ris_draw_ride)
     ris_draw_uint a, b, c, target; /* skin surface vertices, surface vertex written */
     ris_draw_v4 share;             /* barycentric, w unused */
     ris_draw_v4 offset;            /* mm in the triangle's frame, w unused */
+    ris_draw_v4 still;             /* the same at rest, mm; w = share of the triangle's turn that it follows */
     ris_draw_v4 normal;            /* unit, in the triangle's frame, w unused */
 }
 RIS_DRAW_STRUCT_END(ris_draw_ride);

@@ -22,16 +22,16 @@ static const struct {
     {                                                                                                        \
 #type, #member, (uint32_t)offsetof(type, member)                                                     \
     }
-    FIELD(ris_draw_term, source),   FIELD(ris_draw_term, weight),  FIELD(ris_draw_ride, a),
-    FIELD(ris_draw_ride, b),        FIELD(ris_draw_ride, c),       FIELD(ris_draw_ride, target),
-    FIELD(ris_draw_ride, share),    FIELD(ris_draw_ride, offset),  FIELD(ris_draw_ride, normal),
-    FIELD(ris_draw_corner, vertex), FIELD(ris_draw_corner, u),     FIELD(ris_draw_corner, v),
-    FIELD(ris_draw_count, count),   FIELD(ris_draw_view, clip),    FIELD(ris_draw_view, shadow),
-    FIELD(ris_draw_view, eye),      FIELD(ris_draw_view, light),   FIELD(ris_draw_view, radiance),
-    FIELD(ris_draw_view, sky),      FIELD(ris_draw_view, ground),  FIELD(ris_draw_view, paper),
-    FIELD(ris_draw_view, head),     FIELD(ris_draw_view, rim),     FIELD(ris_draw_view, fade),
-    FIELD(ris_draw_view, size),     FIELD(ris_draw_object, place), FIELD(ris_draw_object, tint),
-    FIELD(ris_draw_object, pivot),
+    FIELD(ris_draw_term, source),   FIELD(ris_draw_term, weight),   FIELD(ris_draw_ride, a),
+    FIELD(ris_draw_ride, b),        FIELD(ris_draw_ride, c),        FIELD(ris_draw_ride, target),
+    FIELD(ris_draw_ride, share),    FIELD(ris_draw_ride, offset),   FIELD(ris_draw_ride, still),
+    FIELD(ris_draw_ride, normal),   FIELD(ris_draw_corner, vertex), FIELD(ris_draw_corner, u),
+    FIELD(ris_draw_corner, v),      FIELD(ris_draw_count, count),   FIELD(ris_draw_view, clip),
+    FIELD(ris_draw_view, shadow),   FIELD(ris_draw_view, eye),      FIELD(ris_draw_view, light),
+    FIELD(ris_draw_view, radiance), FIELD(ris_draw_view, sky),      FIELD(ris_draw_view, ground),
+    FIELD(ris_draw_view, paper),    FIELD(ris_draw_view, head),     FIELD(ris_draw_view, rim),
+    FIELD(ris_draw_view, fade),     FIELD(ris_draw_view, size),     FIELD(ris_draw_object, place),
+    FIELD(ris_draw_object, tint),   FIELD(ris_draw_object, pivot),
 };
 static const struct {
     const char *type;

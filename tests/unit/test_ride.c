@@ -46,6 +46,19 @@ static void test_frame(void **state)
     assert_false(ris__ride_frame((ris_vec3){0, 0, 0}, (ris_vec3){1, 1, 1}, (ris_vec3){2, 2, 2}, frame));
 }
 
+/* The share of the way, at the length of the strand; all of it for what rides on any other skin. */
+static void test_turn(void **state)
+{
+    (void)state;
+    const ris_vec3 still = {0, -3, 4}, turned = {0, 3, 4};
+    assert_true(distance(ris__ride_turn(still, turned, 1), turned) == 0);
+    assert_true(distance(ris__ride_turn(still, turned, 0), still) < 1e-6f);
+    assert_true(distance(ris__ride_turn(still, turned, 0.5f), (ris_vec3){0, 0, 5}) < 1e-6f);
+    const ris_vec3 third = ris__ride_turn(still, turned, 0.3f);
+    assert_true(fabsf(sqrtf(third.y * third.y + third.z * third.z) - 5) < 1e-5f && third.y < 0);
+    assert_true(distance(ris__ride_turn(still, (ris_vec3){0, 3, -4}, 0.5f), (ris_vec3){0, 3, -4}) == 0);
+}
+
 /* The search along x finds the same distance as trying every triangle. */
 static void test_bind(void **state)
 {
@@ -143,10 +156,8 @@ static void test_parts(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_nearest),
-        cmocka_unit_test(test_frame),
-        cmocka_unit_test(test_bind),
-        cmocka_unit_test(test_parts),
+        cmocka_unit_test(test_nearest), cmocka_unit_test(test_frame), cmocka_unit_test(test_turn),
+        cmocka_unit_test(test_bind),    cmocka_unit_test(test_parts),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
