@@ -10,6 +10,7 @@
 #define ARC_STEPS 512
 #define HALF 8
 #define AROUND 14
+#define CANINE_MM 0.6
 
 typedef struct arch {
     double half_width, front_z, back_z, power, edge_y, rise, crown_mm,
@@ -82,7 +83,7 @@ static void section(const crown *c, double h, double *width, double *depth, doub
         *lean = 0.40 * c->depth * (0.2 - thin) * 0.72 + 0.5 * sin(PI * clamp(h, 0, 1)) -
                 0.3 * (h - 1); /* 0 at the edge */
         if (c->cusps == 1)
-            *width *= 1 - 0.42 * smoothstep(0.55, 1.0, h);
+            *width *= 1 - 0.30 * smoothstep(0.55, 1.0, h);
     } else {
         *depth = 0.46 * c->depth * (0.92 + 0.08 * sin(PI * clamp(h, 0, 1)) - 0.22 * smoothstep(0.55, 1, h));
         *lean = 0;
@@ -92,7 +93,7 @@ static void section(const crown *c, double h, double *width, double *depth, doub
 static double cusp_height(const crown *c, double x, double z)
 {
     if (c->cusps == 2)
-        return 0.9 * (z * z - 0.45) - 0.35 * x * x;
+        return 0.7 * (z * z - 0.45) - 0.2 * x * x;
     if (c->cusps == 4)
         return 1.1 * (fabs(x) * fabs(z) * 2 - 0.55 + 0.35 * z * z);
     return 0;
@@ -125,8 +126,8 @@ static void add_tooth(part *p, const arch *a, const crown *c, double centre, dou
                    sz = copysign(pow(fabs(cz), 0.80), cz) * inset;
             double y = height * (1 - h) -
                        (r < count ? 0.9 * smoothstep(0.85, 1.0, h) : 0.9) * cusp_height(c, sx, sz);
-            if (c->cusps == 1) /* the tip of the canine stands proud of its neighbours */
-                y -= 0.9 * smoothstep(0.7, 1.0, h) * (1 - fabs(sx)) - 0.5 * smoothstep(0.7, 1, h) * fabs(sx);
+            if (c->cusps == 1) /* the tip of the canine stands proud; worn, or it looks a fang */
+                y -= smoothstep(0.7, 1.0, h) * (CANINE_MM * (1 - fabs(sx)) - 0.35 * fabs(sx));
             dvec at = v_mad(
                 v_mad(v_mad(base, along, sx * width * round_off), out, sz * depth * round_off + lean), up, y);
             part_vertex(p, at, u0 + (u1 - u0) * (0.5 + 0.5 * sx), clamp(h, 0, 1));
@@ -146,7 +147,7 @@ static void add_tooth(part *p, const arch *a, const crown *c, double centre, dou
         part_vertex(p, v_mad(v_mad(base, out, lean), up, height * (1.1 - levels[0])), (u0 + u1) / 2, 0);
     close_fan(p, root, first, a->sign < 0);
     section(c, 1, &width, &depth, &lean);
-    double y = -0.9 * cusp_height(c, 0, 0) - (c->cusps == 1 ? 0.9 : 0);
+    double y = -0.9 * cusp_height(c, 0, 0) - (c->cusps == 1 ? CANINE_MM : 0);
     uint32_t tip = part_vertex(p, v_mad(v_mad(base, out, lean), up, y), (u0 + u1) / 2, 1);
     close_fan(p, tip, last, a->sign > 0);
 }
