@@ -37,7 +37,7 @@ void main()
     // light that came off tongue, gums and cheeks is red, the more the deeper; a row of teeth lights itself, or it looks decayed
     float enamel = smoothstep(0.25, 0.55, min(albedo.r, min(albedo.g, albedo.b)));
     diffuse *= mix(mix(vec3(1.0, 0.72, 0.60), vec3(1.0, 0.88, 0.84), enamel), vec3(1.0), smoothstep(0.05, 0.45, seen));
-    vec3 flesh = mix(vec3(0.70, 0.24, 0.17), vec3(0.75, 0.50, 0.46), enamel) * (0.5 + 0.5 * ao) * seen * (2.0 - seen) *
+    vec3 flesh = mix(vec3(0.70, 0.24, 0.17), vec3(1.15, 0.86, 0.80), enamel) * (0.5 + 0.5 * ao) * seen * (2.0 - seen) *
                  (1.0 - 0.7 * share);
     // what is mirrored: the room between the lips, dark flesh beside
     vec3 r = reflect(-v, n);

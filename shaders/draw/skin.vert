@@ -25,7 +25,7 @@ void main()
         // a little behind it, so that the rim itself lies within
         vec3 into = through_opening(RIS_DRAW_RIM_MOUTH, at[c.vertex].xyz - vec3(0.0, 0.0, 2.5));
         float seen = length(into), facing_it = clamp((dot(facing[c.vertex].xyz, into) / max(seen, 1e-4) + 0.25) / 1.25, 0.0, 1.0);
-        float share = sqrt(seen) * smoothstep(0.0, 0.25, seen) * mix(0.3, 1.0, facing_it); // and the walls of the mouth light each other
+        float share = sqrt(seen) * smoothstep(0.0, 0.25, seen) * mix(0.6, 1.0, facing_it); // and the walls of the mouth light each other
         out_rest.w = max(-out_rest.w, into.z > 0.0 ? share : min(2.0 * seen, 1.0)); // else it lies before the lips
     }
     out_squeeze_own = squeeze[c.vertex].own.xyz;
