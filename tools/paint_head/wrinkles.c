@@ -30,17 +30,18 @@ static float between(float from, float to, float soft, float x)
 /* Frontalis: across the forehead, higher over each brow's arch, lower at the midline; uneven and broken. */
 static float forehead(const place *at, float scalp)
 {
-    static const float height[4] = {32, 40, 48.5f, 58}, strength[4] = {0.75f, 1.0f, 0.95f, 0.6f};
+    static const float height[4] = {31, 38, 45.5f, 54}, strength[4] = {0.75f, 1.0f, 1.15f, 1.1f};
     float sum = 0;
     for (int k = 0; k < 4; k++) {
         const float seed = (float)k * 7.3f;
-        const float arch = 2.6f * expf(-(at->x - 24) * (at->x - 24) / 300) - 1.2f * expf(-at->x * at->x / 90);
-        const float wander = 1.5f * ris_paint_noise(vec3(at->site->p.x / (17 * at->s), seed, 0), 401) +
+        const float arch =
+            2.0f * expf(-(at->x - 24) * (at->x - 24) / 340) - 0.6f * expf(-at->x * at->x / 120);
+        const float wander = 2.0f * ris_paint_noise(vec3(at->site->p.x / (19 * at->s), seed, 0), 401) +
                              0.5f * ris_paint_noise(vec3(at->site->p.x / (5 * at->s), seed, 0), 409);
-        const float end = 46 - 3.5f * (float)k + 4 * ris_paint_noise(vec3(seed, at->site->p.x > 0, 0), 419);
-        const float broken = 0.8f + 0.45f * ris_paint_noise(vec3(at->site->p.x / (12 * at->s), seed, 3), 421);
+        const float end = 50 - 3.0f * (float)k + 4 * ris_paint_noise(vec3(seed, at->site->p.x > 0, 0), 419);
+        const float broken = 0.85f + 0.5f * ris_paint_noise(vec3(at->site->p.x / (12 * at->s), seed, 3), 421);
         const float d = at->up - height[k] - arch - wander;
-        sum += strength[k] * broken * ris_paint_step(end, end - 16, at->x) * furrow(d, 1.7f);
+        sum += strength[k] * broken * ris_paint_step(end, end - 26, at->x) * furrow(d, 1.6f);
     }
     return sum * (1 - scalp);
 }
@@ -87,12 +88,12 @@ static float round_the_eye(const place *at)
     float sum = 0;
     if (u > 0) {
         static const float ray[5] = {38, 17, -2, -19, -40}, strength[5] = {0.45f, 0.75f, 0.6f, 0.7f, 0.4f};
-        const float bend = 14 * ris_paint_noise(vec3_scale(p, 1 / (8 * at->s)), 439) - 0.35f * (r - 12);
+        const float bend = 7 * ris_paint_noise(vec3_scale(p, 1 / (10 * at->s)), 439) - 0.35f * (r - 12);
         for (int k = 0; k < 5; k++) {
             const float angle = (ray[k] + (k > 2 ? bend : -bend)) / 57.29578f;
             const float d = v * cosf(angle) - u * sinf(angle);
-            sum += strength[k] * furrow(d, 0.75f + 0.02f * r) *
-                   between(5.5f, 25 - 2 * fabsf((float)k - 2), 7, r);
+            sum += strength[k] * furrow(d, 0.7f + 0.03f * r) *
+                   between(5.5f, 29 - 2.5f * fabsf((float)k - 2), 10, r);
         }
     }
     const float lower = ris_paint_step(0, -4, at->up) * ris_paint_step(17, 12, fabsf(at->x - 31));
@@ -129,8 +130,9 @@ static float nasolabial(const place *at)
             way = (float)k + t;
         }
     }
-    const float a = nearest / (3.0f * s);
-    return 0.8f * expf(-a * a) * ris_paint_step(0, 2.1f, way) * ris_paint_step(4, 2.2f, way);
+    const float a = nearest / (4.0f * s), roll = (nearest - 8.5f * s) / (3.5f * s);
+    return (0.85f * expf(-a * a) - 0.15f * expf(-roll * roll)) * ris_paint_step(0, 2.1f, way) *
+           ris_paint_step(4, 2.2f, way);
 }
 
 /* Arcs beside the corner of the mouth, upright lines above and below the lips, the pebbles of mentalis. */
