@@ -6,16 +6,15 @@
 
 /* A vertex on a triangle. Frame of the triangle: x along its first edge, z its normal, y across; the origin is the
  * barycentric point. The vertices of a strand or card that stands off the skin share the triangle and the point of the
- * vertex nearest to the skin, their root, so that a lash keeps its shape. */
+ * vertex nearest to the skin, their root, so that a lash keeps its shape. Those of the lower lid follow little of its turn: its
+ * edge turns in before a squint, while lashes are rooted in the tarsus, which does not. */
 typedef struct ris_ride {
     uint32_t vertex[3];
     float share[3];  /* barycentric, sums to 1 */
     ris_vec3 offset; /* mm in the frame */
     ris_vec3 still;  /* the same at rest, mm in the space of the head */
-    float
-        turn; /* share of the triangle's turn that the offset follows, 0..1: less than 1 on the lower lid, whose edge
-                      * turns in before a squint, while the roots of its lashes sit in the tarsus and do not */
-    bool standing; /* of a strand that stands off the skin */
+    float turn;      /* share of the triangle's turn that the offset follows, 0..1 */
+    bool standing;   /* of a strand that stands off the skin */
 } ris_ride;
 
 /* Binds the vertices of mesh to the skin of model at rest: out and out_triangle (mesh->vertex_count); out_triangle is the

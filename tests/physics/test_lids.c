@@ -8,6 +8,7 @@
 
 #define MARGIN_RING 2 /* from the lining of the socket outwards */
 #define GAP_MM 0.3f
+#define LASH_VERTICES 12 /* of a strand, from its root to its tip */
 
 enum { UPPER = 1, LOWER = 2, CORNER = 3 };
 
@@ -407,6 +408,48 @@ static void the_ring_narrows_both_lids(void **state)
     }
 }
 
+/* How steeply the strands of one lid stand, mean of the sines of their angles over the horizontal plane. */
+static double lash_slope(uint32_t p, bool upper, const ris_vec4 *at)
+{
+    const ris_mesh *mesh = &model->head->part[p].mesh;
+    double sum = 0;
+    uint32_t count = 0;
+    for (uint32_t first = 0; first + LASH_VERTICES <= mesh->vertex_count; first += LASH_VERTICES) {
+        if ((mesh->position[first].y > part("eye.L")->pivot.y) == upper) {
+            const ris_vec3 way = v3_sub(v4_xyz(at[first + LASH_VERTICES - 1]), v4_xyz(at[first]));
+            sum += (double)(way.y / v3_length(way));
+            ++count;
+        }
+    }
+    assert_true(count > 20);
+    return sum / count;
+}
+
+/* AU7 turns the edges of both lids in. The upper lashes go along and hang before the eye; the lower ones do not stand up. */
+static void lower_lashes_stay_down(void **state)
+{
+    (void)state;
+    uint32_t p = 0;
+    while (p < model->head->part_count && strcmp(model->head->part[p].name, "lashes.L") != 0) {
+        ++p;
+    }
+    assert_true(p < model->head->part_count);
+    ris_vec4 *at = calloc(model->head->part[p].mesh.vertex_count, sizeof *at);
+    assert_non_null(at);
+    need(ris_sim_part(sim, p, rest, at, &err));
+    const double low = lash_slope(p, false, at), high = lash_slope(p, true, at);
+    memset(pose, 0, model->channel_count * sizeof *pose);
+    set("orbicularis_oculi_palpebral.L", 1);
+    settle();
+    need(ris_sim_part(sim, p, x, at, &err));
+    const double low_now = lash_slope(p, false, at), high_now = lash_slope(p, true, at);
+    print_message("lashes: lower %.2f, in a squint %.2f; upper %.2f, in a squint %.2f\n", low, low_now, high,
+                  high_now);
+    assert_true(low < -0.1 && low_now < -0.05);
+    assert_true(high > 0.2 && high_now < -0.05);
+    free(at);
+}
+
 /* One eye at a time is the mirror image of the other, and moves nothing on its side. */
 static void one_eye_mirrors(void **state)
 {
@@ -471,6 +514,7 @@ int main(void)
         cmocka_unit_test(the_levator_lifts_the_lid),
         cmocka_unit_test(no_triangle_turns_over),
         cmocka_unit_test(the_ring_narrows_both_lids),
+        cmocka_unit_test(lower_lashes_stay_down),
         cmocka_unit_test(one_eye_mirrors),
         cmocka_unit_test(blink),
     };
