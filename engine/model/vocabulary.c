@@ -42,16 +42,28 @@ uint32_t ris__model_mirror_channel(const ris_model *model, uint32_t c)
     return c;
 }
 
+/* A unit of one side (a wink): nothing but left channels. */
+static bool is_left(const ris_model *model, const ris_word *word)
+{
+    bool all = word->value_count > 0;
+    for (uint32_t i = 0; i < word->value_count; i++) {
+        const char *name = model->channel[word->value[i].channel].name;
+        all = all && ris__name_is_sided(name) && name[strlen(name) - 1] == 'L';
+    }
+    return all;
+}
+
 /* One side of a word. Of what does the same on both sides: the channels of that side, and half of those without one,
  * so that both halves make the whole. What is written for one side is written for the left: .L is it, .R its mirror
  * image. */
 static void add_side(const ris_model *model, const ris_word *word, char side, float value, float *pose)
 {
+    const bool for_left = word->kind == RIS_WORD_EXPRESSION ? !word->symmetric : is_left(model, word);
     for (uint32_t i = 0; i < word->value_count; i++) {
         const uint32_t c = word->value[i].channel;
         const char *name = model->channel[c].name;
         const float v = value * word->value[i].value;
-        if (word->kind == RIS_WORD_EXPRESSION && !word->symmetric) {
+        if (for_left) {
             if (side == 'L') {
                 pose[c] += v;
             } else {

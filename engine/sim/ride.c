@@ -8,8 +8,7 @@
 
 #define FAR_MM 1.5f /* a strand or card that reaches farther from the skin than this hangs on its root */
 #define SPREAD_PASSES 64
-#define LOWER_LASH_TURN                                                                                      \
-    0.3f /* of lashes of the lower lid: half-way they still stand up before the eye in a squint */
+#define LOWER_LASH_TURN 0.3f /* half-way they would still stand up before the eye in a squint */
 
 static ris_vec3 sub(ris_vec3 a, ris_vec3 b)
 {
