@@ -170,7 +170,7 @@ done:
     return result;
 }
 
-/* Binding of a vertex at rest to a triangle of the drawn surface, `away` from the point with those shares. */
+/* Binding of a vertex at rest to a triangle of the drawn surface, `away` from the point with those shares; turn as in ris_ride. */
 static bool bind_to_surface(const piece *skin, const uint32_t node[3], const float share[3], ris_vec3 away,
                             ris_vec3 normal, float turn, ris_draw_ride *out)
 {
